@@ -171,7 +171,7 @@ def in_turn(checkouts: dict[str, Path], scenes: list[str], rounds: int) -> None:
 
 
 def baked(scenes: Sequence[str], workers: int) -> Iterator[dict[str, Any]]:
-    """Bake scenes into an empty cache, which is thrown away."""
+    """Bake scenes into an empty cache, which is deleted."""
     library = SceneLibrary()
     # The furniture is in the user's cache, which is moved afterwards.
     snapshots = {scene: library.snapshot(scene) for scene in scenes}

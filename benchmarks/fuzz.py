@@ -1,4 +1,4 @@
-"""Feed every reader of what strangers send with changed samples, for as long as one likes.
+"""Feed every reader of untrusted input with changed samples, for as long as one likes.
 
     python benchmarks/fuzz.py [--seconds S | --inputs N] [--seed N] [TARGET ...]
 

@@ -1,4 +1,4 @@
-"""Generates rooms by many seeds and checks each file anew: how many have a fault, the times.
+"""Generates rooms by many seeds and checks each file again: how many have a fault, the times.
 
     python -m benchmarks.generated_rooms --seeds 0 1000 --results rooms.jsonl --workers 2
 
@@ -41,7 +41,7 @@ class Judge:
     kind : str or None
         Of all rooms; None takes the seeds' own.
     every : int
-        The files of every so many seeds are checked anew.
+        The files of every so many seeds are checked again.
     """
 
     def __init__(self, kind: str | None, every: int) -> None:

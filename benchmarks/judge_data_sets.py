@@ -7,7 +7,7 @@
     PYTHONPATH=bop_toolkit judges/bin/python benchmarks/judge_data_sets.py sets
 
 Needs neither sailenv_ros nor ROS. bop_toolkit (https://github.com/thodan/bop_toolkit) is used from
-its folder; its renderer needs EGL. What is not installed is passed over, and said.
+its folder; its renderer needs EGL. What is not installed is skipped, and said.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@
     judges/bin/pip install webdataset datasets pillow pycocotools torch torchvision lerobot
     judges/bin/python benchmarks/judge_shards.py set
 
-Needs neither sailenv_ros nor ROS. What is not installed is passed over, and said.
+Needs neither sailenv_ros nor ROS. What is not installed is skipped, and said.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Kill works by SIGKILL at random moments; say what they left and whether the next run mends it.
+"""Kill works by SIGKILL at random moments; say what they left and whether the next run repairs it.
 
     python benchmarks/kills.py [WORK ...] [--trials N] [--seed N]
 

@@ -1,7 +1,7 @@
 """Runs Kubric's point tracker on arrays: kubric_judge.py DATASET.PY GIVEN.npz TAKEN.npz.
 
 Runs in an interpreter with TensorFlow, without this package; `motion_judges.py` starts it. Of what
-Kubric's module imports, that which its tracker does not use is left out.
+Kubric's module imports, what its tracker does not use is left out.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ another version of this repository, which is run in turn with this one. Of each 
 
 - how much processor time and wall time a simulated second takes (medians of the rounds) and the
   real-time factor that a processor of its own would give,
-- how far a body's middle got beyond the walls at worst, and how deep bodies stand in walls,
+- how far a body's middle got beyond the walls at most, and how deep bodies stand in walls,
 - a digest of all poses at the end: the rounds must agree,
 - how far a body that stands in a pile gets from where the scene puts it.
 

@@ -1,4 +1,4 @@
-"""Motion and tracks held against programs of others, which are not part of this package.
+"""Motion and tracks compared with programs of others, which are not part of this package.
 
     python benchmarks/motion_judges.py --rigid DIR --tapnet DIR --kubric DIR --python PYTHON
 

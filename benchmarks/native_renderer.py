@@ -7,7 +7,7 @@ One simulated world moves on; at each of its instants all take their turn in one
 what disturbs the machine disturbs all alike. Ratios are of medians. ``CPU`` is the processor time
 of all threads: it is what a busy machine disturbs least. OpenGL has as many threads as the machine
 has processors; the native renderer has those that are told. PyBullet's two renderers and MuJoCo's
-(where they are to be had) draw at every fourth instant.
+(where they are available) draw at every fourth instant.
 
 `--changes` times the frame after a light was set, an object was spawned and was removed. `--agents`
 times five views of 1, 4 and 16 cameras at 320 x 240.
@@ -133,7 +133,7 @@ class Elsewhere:
     Raises
     ------
     RuntimeError
-        If it is not to be had; the text says why.
+        If it is not available; the text says why.
     """
 
     def __init__(self, name: str, scene: str, size: tuple[int, int]) -> None:
@@ -147,7 +147,7 @@ class Elsewhere:
             raise RuntimeError(answer)
 
     def draw(self) -> float:
-        """Go on and draw once; return how long that took [ms]."""
+        """Advance and draw once; return how long that took [ms]."""
         self._pipe.send(True)
         return float(self._ask())
 
@@ -187,7 +187,7 @@ def _draw_elsewhere(pipe: Any, name: str, scene: str, size: tuple[int, int]) -> 
 def _others(
     scene: str, size: tuple[int, int], names: Sequence[str] = OTHERS
 ) -> dict[str, Elsewhere]:
-    """Start the other renderers that are to be had here."""
+    """Start the other renderers that are available here."""
     made = {}
     for name in names:
         try:

@@ -89,7 +89,7 @@ def _described(body: Any) -> dict[str, Any]:
 
 
 def _joint(placement: Any) -> dict[str, Any] | None:
-    """Return the joint of what hangs on the room."""
+    """Return the joint of what is fastened to the room."""
     if placement.joint is None:
         return None
     spec = placement.joint.spec

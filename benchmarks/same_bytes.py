@@ -5,7 +5,7 @@
 
 `save` writes what is drawn of each scene (a pickle, for these machines alone) and the SHA-256 of
 each view that this machine's native renderer makes of it; `draw`, on another machine, makes them
-anew and tells which differ, in how many pixels and by how much. `benchmarks/aarch64` uses it.
+again and tells which differ, in how many pixels and by how much. `benchmarks/aarch64` uses it.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
     python benchmarks/soak.py [--minutes M] [--pause S] [--node] [--scenes NAME ...]
 
 Every round changes the scene, registers agents, renders, spawns and removes: in this process, or
-with `--node` in a node of its own, by way of ROS, beside a SAILenv client and a page that come and
+with `--node` in a node of its own, through ROS, beside a SAILenv client and a page that come and
 go. Prints resident memory, descriptors, threads and mapped shared memory of the process that
 simulates after each round in the first scene, and their slope over the second half by least
 squares.

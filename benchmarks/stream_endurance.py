@@ -8,7 +8,7 @@ the frames by Ctrl-C (``--int``) or by SIGKILL (``--kill``), in the middle of a 
 again. Tells frames per second, processor time, and the resident memory of each process after its
 first 1,000 frames and at its end. ``check`` reads the bag by the library `mcap` alone: each topic
 must have every frame exactly once, at the stamps that its rate says. It ends with a SHA-256 of all
-messages but ``frame_info``, which says how long rendering took: streams that were broken off and
+messages but ``frame_info``, which says how long rendering took: streams that were interrupted and
 those that were not must have the same.
 """
 

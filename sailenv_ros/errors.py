@@ -23,7 +23,7 @@ Every sentence says what was wrong and what is accepted, with the names that the
     │   └── SimulatorLost       the simulator no longer answers
     ├── ProtocolError           bytes of a client that violate the protocol
     ├── RecordingError          a recording or data set that cannot be written or read
-    │   ├── WriteFailed         the disk refused it; once there is room the same call goes on
+    │   ├── WriteFailed         the disk refused it; once there is room the same call continues
     │   ├── PlaceTaken          something else is where it is to be written
     │   └── BegunOtherwise      it was begun there with other settings
     ├── StorageError            a file that cannot be written, e.g. because the disk is full
@@ -278,7 +278,7 @@ class RecordingError(SailenvError):
 
 
 class WriteFailed(RecordingError):
-    """A file that the disk or a remote place refuses; once it does not, the same call goes on."""
+    """A file that the disk or a remote place refuses; once it does not, the same call continues."""
 
     def __init__(self, path: object, problem: Exception) -> None:
         self.path = str(path)

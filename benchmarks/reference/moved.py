@@ -1,10 +1,10 @@
-"""Rooms whose furniture was moved: light that was brought up to date beside light baked anew.
+"""Rooms whose furniture was moved: light that was updated beside light baked again.
 
     python -m benchmarks.reference.moved              # 10 moves a room; bakes what is not there
     python -m benchmarks.reference.moved --no-bake    # with the pictures that are there
 
 Each move puts one large piece of furniture somewhere else, chosen by a seed. Two views show the
-place that it left and where it stands now. Pictures of scenes baked anew are kept in the cache.
+place that it left and where it stands now. Pictures of scenes baked again are kept in the cache.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def moved_room(
     number : int
         Of the move, from 0.
     anew : bool
-        True to bake the light anew instead.
+        True to bake the light again instead.
     """
     baked = snapshot.contents.baked
     if baked is None:

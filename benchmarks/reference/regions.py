@@ -1,4 +1,4 @@
-"""Regions of the compared pictures, by which differences are told apart.
+"""Regions of the compared pictures, by which differences are distinguished.
 
 Ground truth of a view in, a number for each pixel out: the index of one of `REGIONS`.
 """

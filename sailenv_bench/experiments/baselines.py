@@ -49,7 +49,7 @@ class Picture(Protocol):
 
 
 class BaselineScene:
-    """A world that goes on, and its camera on rails.
+    """A world in motion, and its camera on rails.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class _Ours:
 
 
 class _FileBodies(BulletBodies):
-    """The same bodies by way of Wavefront files: PyBullet's OpenGL knows no meshes in memory."""
+    """The same bodies through Wavefront files: PyBullet's OpenGL knows no meshes in memory."""
 
     def __init__(self, client: BulletClient) -> None:
         super().__init__(client)

@@ -54,7 +54,7 @@ class BulletBodies:
         """Make the bodies those of `contents`; what both have in common is kept.
 
         PyBullet never gives back all of a removed body's memory (about 0.8 kB a vertex are lost),
-        so a body is made anew only where model or scale are new.
+        so a body is made again only where model or scale are new.
         """
         if contents is self._contents:
             return

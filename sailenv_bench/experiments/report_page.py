@@ -134,7 +134,7 @@ def page_of(
         By experiment; None for one that was not made yet.
     picture_of : callable
         Gives the ``data:`` address of a picture of the results by its file's name; empty if it is
-        not to be had.
+        not available.
 
     Returns
     -------

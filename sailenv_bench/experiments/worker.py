@@ -1,7 +1,7 @@
 """A process that makes frames when it is told to, and says what they cost.
 
 A `Setting` as JSON in the arguments, numbers of frames on standard input; a JSON line for each on
-standard output. `Worker` is the other end, for whoever started it.
+standard output. `Worker` is the other end, for the process that started it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ END_S = 30.0
 class Worker:
     """A worker process; a context manager.
 
-    Not reached by Ctrl-C in the terminal: it is ended by whoever holds it.
+    Not reached by Ctrl-C in the terminal: it is ended by its owner.
     """
 
     def __init__(self, setting: Setting) -> None:

@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 
 class AssetIndex:
-    """Sizes of objects, each worked out once.
+    """Sizes of objects, each computed once.
 
     Parameters
     ----------

@@ -53,7 +53,8 @@ class CompanionSpots:
         count : int
             How many are wanted.
         ends : mapping
-            The last pieces of rows that go on to a side of a piece, by its identity and the side.
+            The last pieces of rows that continue to a side of a piece, by its identity and the
+            side.
 
         Yields
         ------

@@ -116,7 +116,7 @@ def _closed_way(stops: Sequence[Cell], free: Flags, clearance: Floats) -> list[C
 
 
 def _without_short_steps(way: list[Cell], free: Flags) -> list[Cell]:
-    """Leave out corners that lie close to the one before, where the way can go on without."""
+    """Leave out corners that lie close to the one before, where the way is free without."""
     kept = list(way)
     while len(kept) > 3:
         for index in range(len(kept)):

@@ -25,7 +25,7 @@ LONGEST_MITRE = 3.0
 """Corners of joined walls reach beyond the lines' ends by so many thicknesses at most."""
 
 PARALLEL = math.sin(math.radians(5.0))
-"""Walls that go on nearly straight are not mitred."""
+"""Walls that continue nearly straight are not mitred."""
 
 SMALLEST_M = 1e-3
 

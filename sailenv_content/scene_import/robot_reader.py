@@ -2,7 +2,7 @@
 
     python -m sailenv_content.scene_import.robot_reader FILE FOLDER MEMORY_BYTES
 
-A compiler of others in C++ works on a stranger's file here: what it stumbles over ends this process
+A compiler of others in C++ works on an untrusted file here: what it stumbles over ends this process
 and no other, and it has no more memory than it is given. Writes ``scene.json`` and ``arrays.npz``
 into the folder, or ``refused.txt`` with a sentence.
 """

@@ -1,4 +1,4 @@
-"""XML that strangers wrote → a tree: no entities, no document types, nothing without a limit."""
+"""Untrusted XML → a tree: no entities, no document types, nothing without a limit."""
 
 from __future__ import annotations
 

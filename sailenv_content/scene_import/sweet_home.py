@@ -1,8 +1,8 @@
 """Sweet Home 3D files (``.sh3d``) → scenes.
 
 An archive with ``Home.xml`` (since version 5.3 of the program) and the models and pictures that it
-names. Walls and rooms are made anew, furniture that the standard pack has is ours, other pieces are
-the file's own models.
+names. Walls and rooms are built here, furniture that the standard pack has is ours, other pieces
+are the file's own models.
 """
 
 from __future__ import annotations

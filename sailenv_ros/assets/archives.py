@@ -1,4 +1,4 @@
-"""Unpacking archives that strangers made: nothing leaves the folder, nothing is without a limit."""
+"""Unpacking untrusted archives: nothing leaves the folder, nothing is without a limit."""
 
 from __future__ import annotations
 

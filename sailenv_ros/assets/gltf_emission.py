@@ -37,7 +37,7 @@ _SAMPLES /= _SAMPLES.sum(axis=1, keepdims=True)
 def description_with_strength(path: Path) -> bytes | None:
     """Return a glTF file with the strengths multiplied into its factors; None if it has none.
 
-    What is no glTF file at all is left to whoever reads it.
+    A file that is no glTF at all is left to its reader.
     """
     if EXTENSION.encode() not in path.read_bytes():
         return None

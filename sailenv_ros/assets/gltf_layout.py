@@ -1,7 +1,7 @@
 """Description of a glTF file → whether all that it points at is there.
 
 trimesh follows indices and lengths as they stand, and where one leads beyond the file its errors
-tell of Python. Here each is held against what it points into, before anything is read.
+tell of Python. Here each is compared with what it points into, before anything is read.
 """
 
 from __future__ import annotations

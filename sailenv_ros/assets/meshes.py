@@ -98,7 +98,7 @@ def simplified(raw: RawMesh, target: int, *, max_error: float = 0.004) -> RawMes
     Returns
     -------
     raw : RawMesh
-        Without normals: they are found anew. The same mesh where it is small enough.
+        Without normals: they are computed again. The same mesh where it is small enough.
 
     See Also
     --------

@@ -46,7 +46,7 @@ class Primitives:
         return MappingProxyType({name: name.capitalize() for name in _MAKERS})
 
     def load(self, name: str) -> Asset:
-        """Make one of them anew."""
+        """Make one of them."""
         return _MAKERS[name]()
 
 

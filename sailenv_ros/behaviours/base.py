@@ -67,7 +67,7 @@ class BehaviourParameters(BaseModel):
 
     @property
     def duration_s(self) -> float | None:
-        """Time from its beginning to its end [s]; None if it goes on for ever."""
+        """Time from its beginning to its end [s]; None if it never ends."""
         return None
 
     @property

@@ -23,7 +23,7 @@ def moving_time_s(behaviours: object) -> float | None:
     ----------
     behaviours : object
         A list of mappings as a scene file has them; what is wrong in it counts for nothing, as
-        whoever checks it tells.
+        its check tells.
 
     Returns
     -------

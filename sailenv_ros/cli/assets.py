@@ -111,7 +111,7 @@ def _list(args: argparse.Namespace) -> int:
 
 
 def _verify(_: argparse.Namespace) -> int:
-    """Print every damaged file and what makes it anew; 1 if there is one."""
+    """Print every damaged file and what makes it again; 1 if there is one."""
     kinds = (_pack_problems, _source_problems, _light_problems, _array_problems, _picture_problems)
     problems = [problem for kind in kinds for problem in kind()]
     for file, problem, remedy in problems:

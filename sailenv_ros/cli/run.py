@@ -28,7 +28,7 @@ from sailenv_ros.viewer import ViewerServer
 __all__ = ["add_parser", "run"]
 
 LOOK_S = 0.25
-"""Time between two looks at whether the simulation goes on [s]."""
+"""Time between two checks of whether the simulation still runs [s]."""
 
 
 def add_parser(subparsers: Any) -> None:

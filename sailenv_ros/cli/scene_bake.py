@@ -1,4 +1,4 @@
-"""`sailenv scene bake`: work out the light of rooms beforehand, with a progress bar.
+"""`sailenv scene bake`: compute the light of rooms beforehand, with a progress bar.
 
 `sailenv setup` uses it too.
 """
@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def bake_scenes(args: argparse.Namespace) -> int:
-    """Bake what was asked for; 0 if all is baked in the end.
+    """Bake what was asked for; 0 if all is baked at its end.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def ensure_baked(
     Parameters
     ----------
     drafted : callable
-        Called whenever light is there that is right, but rougher than what comes in the end.
+        Called whenever light is there that is right, but rougher than the final one.
     """
     library = SceneLibrary(scene_paths, allow_modules=allow_modules)
     if is_baked(library.stamp(scene)) or library.load(scene).room is None:

@@ -53,7 +53,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Build and bake what is not there yet; 0 if all is there in the end."""
+    """Build and bake what is not there yet; 0 if all is there at its end."""
     if args.parent is not None:
         end_with_parent(args.parent)
     if args.scene is not None:

@@ -44,7 +44,7 @@ class Estimate:
 
 
 def estimate(job: Job) -> Estimate:
-    """Make a few clips of the first scene in a temporary folder and work out the rest.
+    """Make a few clips of the first scene in a temporary folder and extrapolate the rest.
 
     Raises
     ------

@@ -94,7 +94,7 @@ class FolderStorage(Storage):
 
     @contextlib.contextmanager
     def staging(self, scratch: Path | None = None) -> Iterator[Path]:
-        """Yield an empty folder, which goes in the end."""
+        """Yield an empty folder, which is removed at the end."""
         with contextlib.ExitStack() as stack:
             with write_errors(self.folder):
                 make_folder(self.folder / STAGING)

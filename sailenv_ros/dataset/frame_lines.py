@@ -51,7 +51,7 @@ class _Frames:
         self._clip, self._counts, self._held = clip, dict.fromkeys(self._places, 0), []
 
     def add(self, camera: str, frame: Frame) -> None:
-        """Hand on a frame of the first camera; those of others come after all of that."""
+        """Pass on a frame of the first camera; those of others come after all of that."""
         assert self._clip is not None
         time, place = self._counts[camera], self._places[camera]
         self._counts[camera] += 1
@@ -91,7 +91,7 @@ class _Frames:
             self._held.append(made)
 
     def end_clip(self) -> None:
-        """Hand on the frames of the other cameras."""
+        """Pass on the frames of the other cameras."""
         for one in sorted(self._held, key=lambda made: made.number):
             self._put(one)
         self._held = []

@@ -1,4 +1,4 @@
-"""Where the frames of a shard go: into files, or to whoever takes them as a stream."""
+"""Where the frames of a shard go: into files, or to the reader of a stream."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ class Job:
 
     @property
     def identity(self) -> WorkIdentity:
-        """By which a data set that was broken off is gone on with."""
+        """By which a data set that was interrupted is continued."""
         return WorkIdentity(file=JOB_FILE, settings=self.head, document=self.to_json(), key="head")
 
     @property

@@ -91,7 +91,7 @@ def make_dataset(
     limit: int = 0,
     on_progress: Callable[[Progress], None] = lambda progress: None,
 ) -> MadeDataset:
-    """Make a data set, or go on with one.
+    """Make a data set, or continue one.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def make_dataset(
     engine : Engine
     limit : int
         Frames after which no other shard is begun; 0 makes all. What is there can be read, and a
-        later call goes on with it.
+        later call continues it.
     on_progress : callable
         Called now and then.
 

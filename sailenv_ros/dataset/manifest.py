@@ -30,7 +30,7 @@ MANIFEST = "manifest.json"
 SHARDS_FOLDER = "shards"
 
 _DAMAGE = (ValueError, TypeError, KeyError, AttributeError, RecursionError)
-"""Errors of whoever takes JSON of something else for a summary or a manifest."""
+"""Errors where JSON of something else is taken for a summary or a manifest."""
 
 
 @dataclass(frozen=True, slots=True)

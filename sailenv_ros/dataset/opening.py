@@ -92,7 +92,7 @@ def make(
     limit: int = 0,
     on_progress: Callable[[Progress], None] | None = None,
 ) -> MadeDataset:
-    """Make the data set of a recipe, or go on with one; as ``sailenv dataset make`` does.
+    """Make the data set of a recipe, or continue one; as ``sailenv dataset make`` does.
 
     Parameters
     ----------

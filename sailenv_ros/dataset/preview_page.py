@@ -1,6 +1,6 @@
 """Data set → one HTML page to look at it: frames with masks and boxes, filters, counts.
 
-The page needs no server and nothing from elsewhere. It comes from files that strangers may have
+The page needs no server and nothing from elsewhere. It comes from files that others may have
 made: their texts are data to the page's one script, which a policy of the page names by its hash.
 """
 

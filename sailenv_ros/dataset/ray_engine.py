@@ -1,4 +1,4 @@
-"""Shards made by a Ray cluster: each is a task, which Ray tries anew where its worker dies."""
+"""Shards made by a Ray cluster: each is a task, which Ray tries again where its worker dies."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ class Dataset(Sequence[DatasetFrame]):
     """The frames of a data set, or of one of its splits.
 
     Can be sent to other processes, such as the workers of a PyTorch `DataLoader`: each opens the
-    files anew.
+    files itself.
 
     Attributes
     ----------

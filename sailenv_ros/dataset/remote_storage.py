@@ -64,7 +64,7 @@ class RemoteStorage(Storage):
 
     @contextlib.contextmanager
     def staging(self, scratch: Path | None = None) -> Iterator[Path]:
-        """Yield an empty folder, which goes in the end."""
+        """Yield an empty folder, which is removed at the end."""
         with temporary_folder("sailenv-dataset-", place=scratch) as made:
             yield made
 

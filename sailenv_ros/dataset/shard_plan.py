@@ -59,7 +59,7 @@ class Clip:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shard:
-    """Clips that one worker makes in one go; all of one split.
+    """Clips that one worker makes together; all of one split.
 
     Attributes
     ----------
@@ -199,7 +199,7 @@ class ShardPlan:
 
 
 def clip_groups(shard: Shard, per_scene: int) -> Iterator[tuple[Clip, ...]]:
-    """Yield the clips of a shard that are taken from one scene before it begins anew."""
+    """Yield the clips of a shard that are taken from one scene before it begins again."""
     group: list[Clip] = []
     for clip in shard.clips:
         if group and (clip.scene != group[0].scene or len(group) == per_scene):

@@ -48,7 +48,7 @@ class Storage(ABC):
 
     @abstractmethod
     def staging(self, scratch: Path | None = None) -> AbstractContextManager[Path]:
-        """Yield an empty folder on this machine to write into; it goes in the end.
+        """Yield an empty folder on this machine to write into; it is removed at the end.
 
         Where the place is on another machine it lies in `scratch`, or among temporary files.
         """

@@ -1,7 +1,7 @@
-"""A work that grows at a place until it is whole, and goes on after a break at any moment.
+"""A work that grows at a place until it is whole, and continues after a break at any moment.
 
 Data sets by recipe, exports and streams are written through it. What is done is known by *notes*:
-a note is written last, when all that it speaks of is on the disk. So after Ctrl-C, `kill -9`, a
+a note is written last, when all that it names is on the disk. So after Ctrl-C, `kill -9`, a
 full disk or a power cut the same call finds what is whole by its notes and makes the rest again.
 """
 
@@ -71,7 +71,7 @@ class ResumableStore:
 
     @contextmanager
     def opened(self, *, resume: bool = True) -> Iterator[None]:
-        """Hold the place alone, and begin the work or go on with it; see `check`.
+        """Hold the place alone, and begin the work or continue it; see `check`.
 
         Raises
         ------

@@ -27,7 +27,7 @@ __all__ = ["DatasetStream"]
 class DatasetStream:
     """The frames that a recipe's files would hold, made as they are taken.
 
-    Each iteration begins anew, and gives the same frames. By one worker they come in the order of
+    Each iteration begins again, and gives the same frames. By one worker they come in the order of
     the files; by several, one of each in turn, which is the same order each time. In a worker of a
     PyTorch `DataLoader` it gives that worker's part. Can be sent to other processes.
 

@@ -46,13 +46,13 @@ def verify_dataset(
     seed: int = 0,
     on_shard: Callable[[int, int], None] = lambda done, of: None,
 ) -> list[Difference]:
-    """Compare all files with their hashes, and make some shards anew and compare those.
+    """Compare all files with their hashes, and make some shards again and compare those.
 
     Parameters
     ----------
     where : str or Path
     sample : int
-        How many shards are made anew.
+        How many shards are made again.
     seed : int
         Of the choice among them.
     on_shard : callable

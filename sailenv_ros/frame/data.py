@@ -1,6 +1,6 @@
 """The data of a frame: the views that one camera sees at one instant, and what is known with them.
 
-Comes from `render/` by way of `simulation/`, goes to messages, sockets, files and windows.
+Comes from `render/` through `simulation/`, goes to messages, sockets, files and windows.
 """
 
 from __future__ import annotations

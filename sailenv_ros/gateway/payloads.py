@@ -1,7 +1,7 @@
 """A frame's views as the SAILenv client takes them: pictures, bytes bottom up, or gzipped.
 
 `Frame` in, bytes out. Pictures are uncompressed Netpbm files, which Pillow opens and which lose
-nothing; whoever is far away asks for gzip.
+nothing; clients far away ask for gzip.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ def entries_of_scenario(scenario: Mapping[str, Any], agent: str) -> list[dict[st
     Raises
     ------
     InvalidRequest
-        If an object is malformed. The timings are checked by whoever takes them.
+        If an object is malformed. The timings are checked where they are taken.
     """
     objects = scenario.get("objects", [])
     if not isinstance(objects, list):

@@ -1,6 +1,6 @@
 """One client's conversation: messages in, steps to carry out and bytes to send out; no socket.
 
-An answer is a generator (see `steps`). Whoever drives it decides how to wait; it needs no thread
+An answer is a generator (see `steps`). Its driver decides how to wait; it needs no thread
 and no simulation, which is how it is tested against anything that a peer may send.
 """
 

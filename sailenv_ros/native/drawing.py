@@ -155,7 +155,7 @@ class Drawing(_Scratch):
         nearness : (S, S + `ROW_PADDING`) float32
             Takes 1 - depth of the nearest surface, 0 where there is none.
         changed : (ceil(S / 16),) uint8
-            1 for each 16 rows in which the map may differ from `resting`; brought up to date.
+            1 for each 16 rows in which the map may differ from `resting`; updated.
         resting : float32 array like `nearness`, or None
             What the map begins as; None begins with an empty one.
         """

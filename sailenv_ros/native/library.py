@@ -102,7 +102,7 @@ class NativeLibrary:
 
     @cached_property
     def digest(self) -> str:
-        """Tells apart libraries, and instruction sets of them, that may round differently."""
+        """Distinguishes libraries, and instruction sets of them, that may round differently."""
         code = hashlib.sha256(self.path.read_bytes()).hexdigest()
         return f"{self.instruction_set} {code}"
 

@@ -1,4 +1,4 @@
-"""Light maps and reflection maps, brought up to date by src/kernels/light_maps.cpp."""
+"""Light maps and reflection maps, updated by src/kernels/light_maps.cpp."""
 
 from __future__ import annotations
 

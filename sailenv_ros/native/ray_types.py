@@ -1,6 +1,6 @@
 """The structures of src/kernels/ray_types.h as NumPy types: what kernels that trace rays are given.
 
-Fields that end in `_at` hold addresses of arrays; whoever fills them keeps the arrays alive.
+Fields that end in `_at` hold addresses of arrays; the code that fills them keeps the arrays alive.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 See `light.relight.relighting`.
 
-Arrays of structures hold addresses; whoever calls keeps what they point to alive.
+Arrays of structures hold addresses; the caller keeps what they point to alive.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def gather_change(
     inside_share: float,
     threads: int,
 ) -> tuple[NDArray[np.uint8], Floats, Floats, Floats]:
-    """Gather what arrives at patches by way of others, and straight from area lights.
+    """Gather what arrives at patches from others, and straight from area lights.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def gather_change(
         Points of the unit square, for rays to everywhere and to each light.
     area_lights : (A,) RAY_LIGHT
     least : float
-        Patches of whose view changed things may take less than this share are passed over.
+        Patches of whose view changed things may take less than this share are skipped.
     inside_share : float
         A patch that sees more backs of surfaces than this share lies inside of something.
 

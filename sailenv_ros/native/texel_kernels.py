@@ -95,7 +95,7 @@ def nearest_triangles(
 
 
 def bordered_blocks(texels: TexelMap, shares: Floats) -> Floats:
-    """Return (N, 6, 6) float32: blocks with borders, from neighbours where the surface goes on.
+    """Return (N, 6, 6) float32: blocks with borders, from neighbours where the surface continues.
 
     Parameters
     ----------

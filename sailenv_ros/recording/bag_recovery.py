@@ -36,7 +36,7 @@ def recover(path: Path) -> list[Recovered]:
     """Restore a file, or each file of a bag folder that needs it, under its own name.
 
     Damaged files stay beside them with ``.damaged`` added to their names. `metadata.yaml` of the
-    folder is written anew.
+    folder is written again.
 
     Returns
     -------

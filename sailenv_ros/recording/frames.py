@@ -161,7 +161,7 @@ class RecordedFrames(Sequence[Frame]):
     def index_at(self, time_s: float) -> int:
         """Return the number of the last frame at or before a simulated time [s].
 
-        Where the scene began anew several times, that of the last time.
+        Where the scene began several times, that of the last time.
 
         Raises
         ------

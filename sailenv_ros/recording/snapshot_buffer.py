@@ -1,7 +1,7 @@
 """Keeps the last seconds of what is recorded in memory, and writes them when somebody asks.
 
 Messages in, from any thread; a bag for each request out. Of topics whose last message counts for
-whoever comes late, the last one before the kept seconds is kept too. Knows no ROS.
+late subscribers, the last one before the kept seconds is kept too. Knows no ROS.
 """
 
 from __future__ import annotations

@@ -124,7 +124,7 @@ def only_beside(key: str, *others: str) -> Rule:
 
 
 def carriers_exist(scene: Entry) -> Faults:
-    """Refuse objects upon what is not there, or that carry themselves in the end."""
+    """Refuse objects upon what is not there, or that carry themselves, be it through others."""
     objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
     named = [entry for entry in objects if isinstance(entry.get("name"), str)]
     carrier = {entry["name"]: entry.get("on") for entry in named}

@@ -145,7 +145,7 @@ def on_a_joint(entry: Mapping[str, Any]) -> Faults:
 
 
 def joints_hold(scene: Mapping[str, Any]) -> Faults:
-    """Refuse joints to what is not there, to what moves freely, and to themselves in the end."""
+    """Refuse joints to what is missing, to what moves freely, and to themselves (by others too)."""
     objects = scene.get("objects")
     entries = list(objects) if isinstance(objects, list | tuple) else []
     named = {

@@ -206,7 +206,7 @@ class AgentTable:
     def put(self, name: str, pose: Pose, world: World, *, teleport: bool) -> None:
         """Move an agent; one that follows moves its mover, and with it all that follow it.
 
-        What it faces it goes on facing.
+        It keeps facing what it faces.
         """
         record = self[name]
         moved = [record]

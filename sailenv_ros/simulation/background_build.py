@@ -125,7 +125,7 @@ class BackgroundBuild:
         return self._thread.is_alive()
 
     def close(self) -> None:
-        """Break off what is being built; what is complete stays."""
+        """Stop what is being built; what is complete stays."""
         with self._lock:
             self._closing.set()
             if self._process is not None and self._process.poll() is None:

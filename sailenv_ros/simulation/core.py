@@ -165,7 +165,7 @@ class SimulationCore:
     def randomise_now(
         self, seed: int | None, index: int | None, things: object, record: object
     ) -> dict[str, Any]:
-        """Begin the scene anew with drawn values; see the operation `randomise`."""
+        """Begin the scene again with drawn values; see the operation `randomise`."""
         chance = self.randomiser.next_chance(index, things, record, seeded=seed is not None)
         chosen = self.seed if seed is None else seed
         if chance.record is not None:

@@ -40,7 +40,7 @@ class FrameMaker:
     renderer : RenderBackend
         Owned from now on; closed with this.
     lockstep : bool
-        True has light worked out at once, whatever time that takes.
+        True has light computed at once, whatever time that takes.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class FrameMaker:
         return self._renderer.description
 
     def watch_light(self) -> None:
-        """Take up the light of the present world, which is another one or was baked anew."""
+        """Take up the light of the present world, which is another one or was baked again."""
         self._relighter.watch(self._scene.world.snapshot())
 
     def frame(

@@ -113,7 +113,7 @@ class SimulationLoop:
             self._wake.notify_all()
 
     def close(self) -> None:
-        """Break off what runs and wait for the thread, unless this is called in it."""
+        """Interrupt what runs and wait for the thread, unless this is called in it."""
         self.closing = True
         self.nudge()
         if self._thread is not None and not self.is_mine:
@@ -209,5 +209,5 @@ class SimulationLoop:
 
 
 def _pace(core: SimulationCore) -> tuple[World, bool, float]:
-    """Return what time's pace depends on: when it changes, the clock begins anew."""
+    """Return what time's pace depends on: when it changes, the clock begins again."""
     return core.world, core.clock.runs_by_itself, core.clock.real_time_factor

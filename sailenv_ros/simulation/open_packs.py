@@ -31,7 +31,7 @@ class OpenPacks:
 
     @property
     def are_newest(self) -> bool:
-        """False once the standard pack has been built anew."""
+        """False once the standard pack has been built again."""
         return self._version == _standard_pack_version()
 
     @property

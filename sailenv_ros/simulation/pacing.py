@@ -32,7 +32,7 @@ class Pacer:
         self.lost_s = 0.0
 
     def restart(self, step: int, *, factor: float | None = None) -> None:
-        """Begin anew: that step is now, with another factor if one is given."""
+        """Begin again: that step is now, with another factor if one is given."""
         if factor is not None:
             self._steps_per_s = STEPS_PER_SECOND * factor
         self._wall_s = self._clock()

@@ -220,7 +220,7 @@ class Simulation(ListenedSimulation):
     ) -> Iterator[dict[str, Any]]:
         """Yield frame after frame at a rate of simulated time, the newest each time.
 
-        Whoever is slower than the rate misses frames, which shows in their `sequence`. The rate
+        A loop slower than the rate misses frames, which shows in their `sequence`. The rate
         ends with the iteration.
 
         Parameters
@@ -267,9 +267,9 @@ class Simulation(ListenedSimulation):
         return self._loop.submit(lambda core: core.refresh())
 
     def close(self) -> None:
-        """End the simulation: break off what runs, free everything; a second call does nothing.
+        """End the simulation: interrupt what runs, free everything; a second call does nothing.
 
-        In a fork it does nothing either: the parent goes on with it.
+        In a fork it does nothing either: it is the parent's.
         """
         if self._loop.process.is_inherited:
             return

@@ -1,6 +1,6 @@
 """Questions about the space of the present world: free places, and what rays meet.
 
-Answers are kept until something moves, because whoever asks for a way asks for several.
+Answers are kept until something moves, because one who asks for a way asks for several.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def cached_arrays(
     kind : str
         Of what they are of; a part of the key.
     key : iterable
-        All that they depend on beside the code; told apart by `repr`.
+        All that they depend on beside the code; compared by `repr`.
     make : callable
         Returns them. An error of it goes through, and nothing is kept.
     code : str
@@ -123,7 +123,7 @@ def code_digest(*folders: str, libraries: tuple[str, ...] = ()) -> str:
 
 @lru_cache
 def _processor() -> str:
-    """Return what tells apart processors by which libraries round differently."""
+    """Return what distinguishes processors for which libraries round differently."""
     flags = ""
     with suppress(OSError), open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
         flags = next((line for line in file if line.startswith(("flags", "Features"))), "")

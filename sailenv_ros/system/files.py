@@ -1,8 +1,8 @@
 """Writing files so that they are whole or not there, and locks for those who write.
 
-A file is written beside its place under another name, brought to the disk (fsync), renamed, and its
-folder brought to the disk. So a reader, a killed process and a machine that loses power find the
-old file or the new one, never a part. Whoever reads, changes and writes holds a `file_lock`.
+A file is written beside its place under another name, synced (fsync), renamed, and its folder is
+synced. So a reader, a killed process and a machine that loses power find the
+old file or the new one, never a part. To read, change and write needs a `file_lock`.
 """
 
 from __future__ import annotations
@@ -198,7 +198,7 @@ def begin_write_back(fd: int) -> None:
     """Have the system begin to bring what was written to a file to the disk, and wait for nothing.
 
     Otherwise it may keep all of a large file until somebody syncs, and does nothing else then.
-    A file system that knows no such thing goes on as before.
+    A file system that knows no such thing is left as it is.
     """
     _libc.sync_file_range(fd, ctypes.c_int64(0), ctypes.c_int64(0), _SYNC_FILE_RANGE_WRITE)
 

@@ -3,7 +3,7 @@
 Fast DDS makes some things once in a process. The first eight bytes of every GUID are one of them:
 vendor, host, process id, a random number. A process that is forked later inherits these, and the
 count of participants that the last four bytes come from. So the first participants of all such
-processes have one GUID, and whoever hears two of them takes them for one: of two agents that exist
+processes have one GUID, and one that hears two of them takes them for one: of two agents that exist
 at the same time, at least one never finds its simulator.
 
 The keepers of shared memory are others. Their locks may be held, in the moment of the fork, by
@@ -12,7 +12,7 @@ That is not rare, because glibc's `fork` has the allocator's locks all the while
 allocates or frees meanwhile waits, with what else it holds.
 
 One lock cannot be reached from here: that of glibc's `sem_open`, which Fast DDS calls when it opens
-a port of a new participant. Whoever is forked in that moment blocks as its context is made.
+a port of a new participant. A process forked in that moment blocks as its context is made.
 
 Knows nothing of ROS.
 """
@@ -51,7 +51,7 @@ _MUTEX_BYTES = 40
 
 
 def renew_inherited_dds(library: str = LIBRARY) -> bool:
-    """Have Fast DDS make anew what another process made, if this is a fork of it.
+    """Have Fast DDS make again what another process made, if this is a fork of it.
 
     To be called before a ROS context is made. Contexts that were inherited have lost their threads
     and do not work, before it and after it.

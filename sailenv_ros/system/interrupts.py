@@ -18,7 +18,7 @@ _PROGRAMS = ("sailenv", "sim_node", "recorder", "player")
 def end_at_interrupts() -> None:
     """Leave SIGINT to the operating system if this process runs a program of this package.
 
-    Whoever imports the package into a program of their own keeps what they have, and so does a
+    A program that imports the package keeps the handler that it has, and so does a
     process that was told to ignore SIGINT.
     """
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler and _is_our_program():

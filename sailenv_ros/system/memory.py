@@ -1,7 +1,7 @@
 """Memory of this process: how much there may be, and a setting of the C library's allocator.
 
 Frames are some megabytes, made and freed many times a second. By default the memory goes back to
-the system each time, and each page of the next frame is faulted in anew. Knows nothing of frames.
+the system each time, and each page of the next frame is faulted in again. Knows nothing of frames.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def require_address_space(least_bytes: int) -> None:
 
 
 def no_memory() -> str:
-    """Return the sentence for whoever met a `MemoryError`."""
+    """Return the sentence for a `MemoryError`."""
     limit = _address_limit()
     if limit is None:
         return "there is not enough memory for this"

@@ -1,6 +1,6 @@
 """Things that live in the process that made them: elsewhere they refuse to work, at once.
 
-Threads do not exist in a fork, and locks that they held are held there for ever.
+Threads do not exist in a fork, and locks that they held are held there forever.
 """
 
 from __future__ import annotations

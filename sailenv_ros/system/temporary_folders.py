@@ -1,7 +1,7 @@
 """Temporary folders that do not outlive their process for long, however it ends.
 
 A folder's maker holds a lock on it. One that a killed process left is locked by nobody, and is
-removed by whoever makes the next of that kind.
+removed by the maker of the next of that kind.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Light that was worked out beforehand for what stands still, as the renderer takes it.
+"""Light that was computed beforehand for what stands still, as the renderer takes it.
 
 Made by `bake/` from a scene's first snapshot, travels in `SceneContents` to `render/`. Each light
-has a layer of its own, worked out for white light of intensity 1: a light whose colour or
+has a layer of its own, computed for white light of intensity 1: a light whose colour or
 intensity changes changes the picture without baking again.
 """
 
@@ -31,7 +31,7 @@ EDGE_POINTS = 4
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Unwrapping:
-    """A model's surface laid flat; entries in the order of the model's parts.
+    """A model's surface, unwrapped; entries in the order of the model's parts.
 
     Attributes
     ----------

@@ -49,7 +49,7 @@ SAME_DIRECTION = 1e-9
 """Sine of the angle to the vertical below which a direction has no heading."""
 
 _ORTHOGONAL = 1e-13
-"""Rows of a rotation whose products differ less from those of unit vectors need no mending."""
+"""Rows of a rotation whose products differ less from those of unit vectors need no correction."""
 
 BODY_FROM_OPTICAL: Matrix = np.array(
     [[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
@@ -230,7 +230,7 @@ def _quat_xyzw_from_turn(turn: Matrix) -> tuple[float, float, float, float]:
     """Return the quaternion of a (3, 3) rotation, bit for bit that of SciPy's `Rotation`.
 
     Every start needs some, and importing SciPy's takes 0.2 s. It is asked where the matrix is not
-    orthogonal, and so has to be mended.
+    orthogonal, and so has to be corrected.
     """
     skewed = np.abs(turn @ turn.T - np.eye(3)).max() > _ORTHOGONAL
     if skewed or np.linalg.det(turn) < 0.0:

@@ -27,7 +27,7 @@ class LessonState:
         ``pause``: the lesson is over, and its objects are gone; ``ended``: the last lap is over;
         ``stopped``: somebody has stopped the lessons.
     lap : int
-        Counts from 1; goes on counting where the laps are run through again.
+        Counts from 1; counts on where the laps are run through again.
     laps : int
         How many there are; 0 for no end.
     number : int

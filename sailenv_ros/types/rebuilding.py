@@ -1,4 +1,4 @@
-"""Copies and pickles of frozen data: made anew by the constructor, of the values of its fields.
+"""Copies and pickles of frozen data: made by the constructor, of the values of its fields.
 
 Pickle forgets that an array is read-only and keeps what was cached; a constructor does neither.
 """

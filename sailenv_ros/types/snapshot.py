@@ -86,7 +86,7 @@ class SceneContents:
     lights : tuple of Light
     environment : Environment
     baked : BakedLight or None
-        Light worked out beforehand for what stands still; None where there is none.
+        Light computed beforehand for what stands still; None where there is none.
     """
 
     scene: str

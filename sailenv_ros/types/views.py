@@ -1,6 +1,6 @@
 """The table of all views of a frame.
 
-`VIEWS` says it once: whoever makes, shows, sends, stores or documents views reads it there and
+`VIEWS` says it once: code that makes, shows, sends, stores or documents views reads it there and
 names none of its own.
 """
 

@@ -1,7 +1,7 @@
 """Changes that pages have made, in their order, to be undone and done again.
 
 One history for all pages of a simulation. It ends with the scene: what was changed in a scene that
-has been left or begun anew cannot be undone.
+has been left or begun again cannot be undone.
 """
 
 from __future__ import annotations

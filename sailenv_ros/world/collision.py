@@ -171,8 +171,8 @@ def _triangles(constants: Any, shape: TriangleShape, scale: Vector3) -> dict[str
 def _lists(values: NDArray[Any]) -> list[Any]:
     """Return an array as lists; the same lists for the same values.
 
-    PyBullet never gives back its references to what it reads, so lists that are made anew for each
-    scene would stay for ever.
+    PyBullet never gives back its references to what it reads, so lists that are made again for each
+    scene would stay forever.
     """
     data = hashlib.sha256(np.ascontiguousarray(values).tobytes()).digest()
     key = values.dtype.str, values.shape, data

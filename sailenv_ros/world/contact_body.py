@@ -124,7 +124,7 @@ class ContactLink:
 
 
 def links_near(client: BulletClient, body: int, speed_m_s: float) -> dict[Piece, LinkMotion]:
-    """Return how what hangs on joints moves that a body may strike in the next step."""
+    """Return how what is attached by joints moves that a body may strike in the next step."""
     reach = NEAR_M + speed_m_s / STEPS_PER_SECOND
     low, high = client.getAABB(body, LINK_OF_BASE)
     found = client.getOverlappingObjects([x - reach for x in low], [x + reach for x in high]) or ()

@@ -46,7 +46,7 @@ class ContentsMaker:
     lights : tuple of Light
     environment : Environment
     baked : BakedLight or None
-        Light that was worked out beforehand; these three count from `renew` on.
+        Light that was computed beforehand; these three count from `renew` on.
     current : SceneContents
     """
 
@@ -76,7 +76,7 @@ class ContentsMaker:
         self.current = self._made()
 
     def renew(self) -> None:
-        """Make the contents anew, after something of them was changed."""
+        """Make the contents again, after something of them was changed."""
         self.current = self._made()
 
     def forget_charts(self, ids: Collection[int]) -> None:

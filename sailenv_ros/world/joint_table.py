@@ -45,7 +45,8 @@ class JointTable:
         UnknownName
             If an object is joined to what is not there.
         InvalidRequest
-            If it is joined to what moves freely, or to itself in the end; all is as it was then.
+            If it is joined to what moves freely, or to itself, also by others; all is as it was
+            then.
         """
         everything = list(bodies)
         by_name = {body.placement.name: body for body in everything}

@@ -24,7 +24,7 @@ HELD = 1e-9
 
 STUCK = 0.02
 """Slower than this, [rad/s] or [m/s], and with torque to spare, friction has stopped a joint: the
-engine's solver leaves such speeds where joints hang on one another."""
+engine's solver leaves such speeds where joints depend on one another."""
 
 SPARE = 0.99
 """Share of the friction's torque below which there is torque to spare."""

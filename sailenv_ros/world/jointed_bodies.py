@@ -268,7 +268,7 @@ class JointedBody(Body):
         return new
 
     def remove(self) -> None:
-        """Do nothing: its tree is made anew without it."""
+        """Do nothing: its tree is made again without it."""
 
     def _build(self) -> int:
         return NOT_THERE  # a tree will have it

@@ -263,7 +263,7 @@ class Mover:
         self._since_ns, self._track = time_ns, track
 
     def control(self, controller: Controller, time_ns: int) -> None:
-        """Change what drives it; waypoints go on where they were interrupted.
+        """Change what drives it; waypoints continue where they were interrupted.
 
         Raises
         ------

@@ -157,7 +157,7 @@ class MoverBody(Body):
     def turned_from(self, before: Pose) -> Pose:
         """Return where it is; what does not spin is turned as it was, to the bit.
 
-        The engine rounds orientations anew in every step, and strikes leave spins of 1e-60 rad/s.
+        The engine rounds orientations in every step, and strikes leave spins of 1e-60 rad/s.
         """
         here = self.pose()
         if max(map(abs, self.motion[1])) > NO_SPIN_RAD_S:

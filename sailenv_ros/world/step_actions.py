@@ -156,7 +156,7 @@ class StepActions:
         )
 
     def _limit_penetration(self, bodies: Sequence[Body]) -> None:
-        """Keep bodies out of walls, into which driven ones are pressed anew at each step."""
+        """Keep bodies out of walls, into which driven ones are pressed at each step."""
         get_velocity = self._client.getBaseVelocity
         for body in bodies:
             (x, y, z), angular = get_velocity(body.bullet_id)

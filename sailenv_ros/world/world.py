@@ -228,7 +228,7 @@ class World(WorldState):
         self._changed()
 
     def set_baked(self, baked: BakedLight | None) -> None:
-        """Replace the light that was worked out beforehand for what stands still."""
+        """Replace the light that was computed beforehand for what stands still."""
         self._shown.baked = baked and replace(baked, environment=self._shown.environment)
         self._changed()
 

@@ -40,7 +40,7 @@ times as much, cutlery on a plate never comes to rest."""
 
 WARM_STARTING = 0.85
 """Share of a contact's last impulse that the solver begins with, Bullet's own default; with
-PyBullet's 0.1 a book that lies on a bed trembles for ever."""
+PyBullet's 0.1 a book that lies on a bed trembles forever."""
 
 
 class WorldState:
@@ -71,7 +71,7 @@ class WorldState:
     described : SceneSpec or None
     frustum_planes : callable
         ``frustum_planes(agent, distance_m)`` returns the (N, 4) planes of an agent's view frustum;
-        none unless whoever knows the agents has set it.
+        none unless the owner of the agents has set it.
     """
 
     def __init__(

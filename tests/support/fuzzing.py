@@ -1,4 +1,4 @@
-"""Readers of what strangers send, and inputs for them: samples that are cut, mixed and flipped.
+"""Readers of untrusted input, and inputs for them: samples that are cut, mixed and flipped.
 
 Each target has samples that are right, and a function that must end without an error or with one of
 the package's own. Everything is drawn from one seed, so that a failure comes again.
@@ -59,7 +59,7 @@ class Target:
 
 
 def inputs(samples: tuple[bytes, ...], seed: int) -> Iterator[bytes]:
-    """Yield changed samples for ever; the same ones for the same seed."""
+    """Yield changed samples without end; the same ones for the same seed."""
     rng = random.Random(seed)
     yield from samples
     while True:
@@ -268,7 +268,7 @@ def _model_samples(kind: str) -> tuple[bytes, ...]:
 
 
 def _importer(filename: str) -> Callable[[bytes, Path], object]:
-    """Read with one hull: a decomposition is native code that may take for ever, in its process."""
+    """Read with one hull: a decomposition is native code that may take forever, in its process."""
 
     def read(data: bytes, folder: Path) -> object:
         (folder / filename).write_bytes(data)

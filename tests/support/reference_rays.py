@@ -1,4 +1,4 @@
-"""First hits of rays, in plain NumPy: every ray is held against every triangle, without a tree."""
+"""First hits of rays, in plain NumPy: every ray is tried with every triangle, without a tree."""
 
 from __future__ import annotations
 

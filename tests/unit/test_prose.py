@@ -92,16 +92,16 @@ def test_a_sentence_goes_over_lines_and_ends_at_an_item(page: Path) -> None:
     assert told(page, "".join(f"- {words(20)[:-1]}\n" for _ in range(3))) == []
 
 
-def test_docstrings_of_the_package_name_a_thing() -> None:
-    """None begins with What, Which or Who: the script, without pages, tells none."""
+def test_docstrings_of_the_package_are_plain() -> None:
+    """None begins with What, Which or Who or has a word to avoid: the script finds none."""
     done = subprocess.run(
         [sys.executable, str(SCRIPT)], capture_output=True, text=True, check=False
     )
     assert [line for line in done.stdout.splitlines() if ".py:" in line.split(" ")[0]] == []
 
 
-def test_an_opening_is_found(tmp_path: Path) -> None:
-    """Of a module, a function, an attribute; code that is copied with the script."""
+def test_faults_of_docstrings_are_found(tmp_path: Path) -> None:
+    """Openings and words, with their lines; code, names of parameters and two folders aside."""
     copy = tmp_path / "scripts" / "prose.py"
     copy.parent.mkdir()
     copy.write_text(SCRIPT.read_text())
@@ -110,11 +110,15 @@ def test_an_opening_is_found(tmp_path: Path) -> None:
         (tmp_path / name).write_text("Fine.\n")
     (tmp_path / "sailenv_ros").mkdir()
     (tmp_path / "sailenv_ros" / "x.py").write_text(
-        '"""What it is."""\n\nX = 1\n"""Which one."""\n\n\ndef f():\n    """Whole."""\n'
+        '"""What it is."""\n\nX = 1\n"""Which one."""\n\n\ndef f(anew):\n'
+        '    """Whole, `anew`.\n\n    anew : bool\n        True begins anew.\n    """\n'
     )
+    (tmp_path / "sailenv_content" / "standard").mkdir(parents=True)
+    (tmp_path / "sailenv_content" / "standard" / "x.py").write_text('"""Made anew."""\n')
     done = subprocess.run([sys.executable, str(copy)], capture_output=True, text=True, check=False)
     assert done.stdout.splitlines() == [
         "sailenv_ros/x.py:1: What it is.",
         "sailenv_ros/x.py:4: Which one.",
+        "sailenv_ros/x.py:11: 'anew': write 'again'",
     ]
     assert done.returncode == 1

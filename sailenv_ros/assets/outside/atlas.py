@@ -1,6 +1,6 @@
 """From a `Scenery` to the parts of a model: pictures in their light, on as few textures as hold.
 
-The materials only emit: colour times light, worked out once, as a photograph has it.
+The materials only emit: colour times light, computed once, as a photograph has it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ LEVELS = 4
 
 SUN_STEP_M, MOST_SUN_STEPS = 0.2, 100
 SKY_STEP_M, MOST_SKY_STEPS = 0.7, 16
-"""How far apart light is worked out on a piece, at least [m], and at most so often along a side."""
+"""How far apart light is computed on a piece, at least [m], and at most so often along a side."""
 
 MEAN_SHARE = 1.0 / 3.0
 """Share of the emission that the mean luminance of all surfaces has: whites are three times as

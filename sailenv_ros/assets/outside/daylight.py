@@ -1,6 +1,6 @@
 """Light of sun and sky on what lies outside: shadows by boxes and balls that stand for it.
 
-Points and a normal in, the radiance that a white surface would have there out. It is worked out
+Points and a normal in, the radiance that a white surface would have there out. It is computed
 once, when a room is built, and is part of the colour then.
 """
 

@@ -19,7 +19,7 @@ __all__ = ["Floats", "Surface", "SurfaceMaps", "surface_arrays", "surface_of"]
 Floats = NDArray[np.float32]
 
 _STEPS = 4096
-"""Linear colours are told apart so finely before they are encoded."""
+"""Linear colours are distinguished so finely before they are encoded."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

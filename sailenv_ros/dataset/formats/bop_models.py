@@ -98,7 +98,7 @@ class ObjectModel:
     def _symmetries(self) -> tuple[list[dict[str, Any]], list[list[float]]]:
         """Return turns about the axes through the middle of the box that leave the shape alike.
 
-        Of its shape alone: its colours may tell apart what these call alike.
+        Of its shape alone: its colours may distinguish what these call alike.
         """
         points = self._surface_points()
         if not len(points):

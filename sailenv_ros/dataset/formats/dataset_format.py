@@ -78,7 +78,7 @@ class WriteResult:
     ----------
     record : JSON value
         What `DatasetFormat.finish` needs of the frame; None for nothing. It is kept in a file, so
-        that a writer that was killed goes on where it was.
+        that a writer that was killed continues where it was.
     written : mapping of str to int
         How many of what was written: ``{"annotations": 12}``.
     left_out : mapping of str to int
@@ -168,9 +168,9 @@ class DatasetFormat(ABC):
         Parameters
         ----------
         records : sequence of Record
-            One for each frame, in the order of their numbers. They may be read anew each time they
+            One for each frame, in the order of their numbers. They may be read again each time they
             are asked for, so that large data sets need not fit into memory.
         """
 
     def close(self) -> None:  # noqa: B027 - often nothing is open
-        """Free what is open when writing is broken off; what is not complete goes."""
+        """Free what is open when writing is interrupted; what is not complete goes."""

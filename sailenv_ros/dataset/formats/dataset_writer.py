@@ -80,7 +80,7 @@ class DatasetWriter:
     source : str
         What the frames come from, told in the summary.
     resume : bool
-        True goes on with a data set whose writing was broken off: `done` frames are there, and the
+        True continues a data set whose writing was interrupted: `done` frames are there, and the
         next one that is added is the next. False needs an empty folder.
 
     Raises
@@ -236,7 +236,7 @@ class DatasetWriter:
         return summary
 
     def close(self) -> None:
-        """Leave the data set unfinished, to go on with another time."""
+        """Leave the data set unfinished, to be continued another time."""
         if self._summary is None:
             with self._held_place:
                 self._journal.flush()

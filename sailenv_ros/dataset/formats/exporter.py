@@ -48,7 +48,7 @@ def export(
     rules : AnnotationRules
         Which objects are annotated.
     resume : bool
-        True goes on with what an earlier call of the same arguments had to leave unfinished.
+        True continues what an earlier call of the same arguments had to leave unfinished.
     on_frame : callable
         Called with the number of frames that are done and of those there are.
 

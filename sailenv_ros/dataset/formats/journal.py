@@ -1,4 +1,4 @@
-"""Journal of the frames of a data set made so far, by which its writer goes on after a break."""
+"""Journal of the frames of a data set made so far, by which its writer continues after a break."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class TarWriter:
     Parameters
     ----------
     file : binary file
-        Stays open in the end.
+        Stays open.
     path : Path
         Its name, for errors.
     """

@@ -1,7 +1,7 @@
-"""A stream's script → a bag, part by part, so that one that was broken off goes on where it was.
+"""A stream's script → a bag, part by part, so that one that was interrupted continues where it was.
 
 A lockstep simulation, every frame exactly once; the same stream, seed and options give the same
-messages, whether or not it was broken off (but for `render_s`), and whatever light lies in the
+messages, whether or not it was interrupted (but for `render_s`), and whatever light lies in the
 cache. What is not whole lies in a folder beside, which `parts` keeps.
 """
 
@@ -39,7 +39,7 @@ from sailenv_ros.types.views import checked_views
 __all__ = ["PART_FRAMES", "StreamJob", "make_stream", "stream_pairs"]
 
 PART_FRAMES = 500
-"""Frames in each file of the bag: what is lost at most when it is broken off."""
+"""Frames in each file of the bag: what is lost at most when it is interrupted."""
 
 MOST_FRAMES = 10_000_000
 
@@ -118,7 +118,7 @@ class StreamJob:
 def make_stream(
     job: StreamJob, output: str | Path, *, on_frame: Callable[[int], None] = lambda done: None
 ) -> Path:
-    """Make a stream's bag, or go on with one of the same job that was broken off.
+    """Make a stream's bag, or continue one of the same job that was interrupted.
 
     Parameters
     ----------

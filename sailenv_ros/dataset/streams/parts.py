@@ -32,7 +32,7 @@ class StreamFolder:
     path : Path
         Where the stream is to be.
     settings : mapping
-        JSON; another call must agree in them to go on.
+        JSON; another call must agree in them to continue.
 
     Raises
     ------

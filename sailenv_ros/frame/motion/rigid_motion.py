@@ -28,7 +28,7 @@ __all__ = ["OCCLUSION_TOLERANCE", "ObservedPoses", "MotionTable", "motion_table"
 OCCLUSION_TOLERANCE = 0.01
 """Share of its depth by which a point must lie behind all four nearest pixels of the other picture
 to count as hidden there: a slanted surface differs by less within one pixel up to about 80 degrees
-at common fields of view, and thin gaps smaller than this are not told apart."""
+at common fields of view, and thin gaps smaller than this are not distinguished."""
 
 _SKY_ROW = 1
 _FIRST_ROW = 2

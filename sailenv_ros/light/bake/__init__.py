@@ -1,1 +1,1 @@
-"""Works out beforehand how light falls on what stands still: lamps, sun, sky, and what bounces."""
+"""Computes beforehand how light falls on what stands still: lamps, sun, sky, and what bounces."""

@@ -1,4 +1,4 @@
-"""Hands light on from patch to patch. From what arrives straight to what arrives in the end.
+"""Passes light from patch to patch. From what arrives straight to what arrives after all bounces.
 
 A patch is a tile of 4 by 4 texels, as far as they belong to one object and face one way. Which
 patches see which is found once, with few rays from each texel, and serves all lights and bounces.

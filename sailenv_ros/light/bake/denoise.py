@@ -31,7 +31,7 @@ def denoised(
     nearness: Floats,
     workers: int = 1,
 ) -> Floats:
-    """Average over tiles of 4 by 4 texels, twice, as far as the surface goes on.
+    """Average over tiles of 4 by 4 texels, twice, as far as the surface continues.
 
     Where other things are near, light changes quickly: there it is averaged over less.
 
@@ -60,8 +60,8 @@ def stand_ins(
     """Return (N,) int32: which texel has the light that rays to each one meet, mostly its own.
 
     The middle of a texel may lie inside of other things though a corner of it is seen: along the
-    edge of a ceiling that goes on above the walls. Light knows nothing of such a texel; its nearest
-    neighbour of the same surface stands for it. One that has none near stands for itself.
+    edge of a ceiling that continues above the walls. Light knows nothing of such a texel; its
+    nearest neighbour of the same surface stands for it. One that has none near stands for itself.
 
     Parameters
     ----------

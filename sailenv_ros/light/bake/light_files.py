@@ -1,7 +1,7 @@
 """Keeps baked light in the user's cache, by fingerprint. From `BakedLight` to a file and back.
 
 A file is a line that names the format, a checksum of the rest, and NumPy's arrays as `np.savez`
-writes them. One that cannot be used is as good as none: it is reported once and baked anew.
+writes them. One that cannot be used counts as none: it is reported once and baked again.
 """
 
 from __future__ import annotations

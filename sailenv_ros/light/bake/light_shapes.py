@@ -1,4 +1,4 @@
-"""How large lights are, whose shadows are worked out beforehand, and how kernels take them."""
+"""How large lights are, whose shadows are computed beforehand, and how kernels take them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Works out the light on everything that stands still. From `WorldSnapshot` to `BakedLight`.
+"""Computes the light on everything that stands still. From `WorldSnapshot` to `BakedLight`.
 
 Knows neither OpenGL nor PyBullet nor where results are kept.
 """
@@ -57,7 +57,7 @@ DRAFT_SMOOTHING = 5
 noisy."""
 
 Preview = Callable[[BakedLight], None]
-"""Is given light of the same scene that is right, but rougher than what comes in the end."""
+"""Is given light of the same scene that is right, but rougher than the final one."""
 
 
 def bake(
@@ -68,7 +68,7 @@ def bake(
     preview: Preview | None = None,
     workers: int = 0,
 ) -> BakedLight:
-    """Work out the light on everything that stands still.
+    """Compute the light on everything that stands still.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ class _Bake:
         return direct, bounced
 
     def _clear(self, light: Light | None) -> float:
-        """Return how much of a light glass lets through, on the mean over the probes it reaches."""
+        """Return how much of a light glass lets through, on average over the probes it reaches."""
         if light is None or light.type != "directional":
             return 1.0
         spots = self._spots[self._visibility.useful]

@@ -1,4 +1,4 @@
-"""The sky's radiance by direction, as light is worked out from it: `Environment` to an array."""
+"""The sky's radiance by direction, as light is computed from it: `Environment` to an array."""
 
 from __future__ import annotations
 

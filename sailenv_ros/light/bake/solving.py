@@ -124,7 +124,7 @@ class SolvedLight:
 
 
 class Solver:
-    """Works out the light at samples, from what is needed first to what refines it.
+    """Computes the light at samples, from what is needed first to what refines it.
 
     Attributes
     ----------
@@ -137,7 +137,7 @@ class Solver:
     radiance : (N, 3 L) float32
         What rays to each point meet, light by light: what it sends out, or its stand-in does.
     bounced : (N, 3 L) float32
-        Irradiance / pi by way of other surfaces and from the sky: the mean of all passes so far.
+        Irradiance / pi from other surfaces and from the sky: the mean of all passes so far.
     """
 
     def __init__(

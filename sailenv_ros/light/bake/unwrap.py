@@ -34,7 +34,7 @@ LONGEST_WAIT_S = 2.0
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Chart:
-    """A model laid flat.
+    """A model, unwrapped.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ def _wait_for_rest(before: frozenset[str]) -> None:
     """Wait until the threads that have come since sleep.
 
     An atlas that goes while one of its threads is just falling asleep is never told that the
-    thread has ended (xatlas notifies without holding the lock), and waits for ever. A thread that
+    thread has ended (xatlas notifies without holding the lock), and waits forever. A thread that
     the system calls sleeping is past that moment.
     """
     late = time.monotonic() + LONGEST_WAIT_S

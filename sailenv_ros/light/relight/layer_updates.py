@@ -1,4 +1,4 @@
-"""Layers of baked light brought up to date. From what changes at patches, texels and probes."""
+"""Updated layers of baked light. From what changes at patches, texels and probes."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Keeps the baked light of a running scene right. From each `WorldSnapshot` to one that is lit.
 
 What was baked and moves, goes or comes changes the light in the frame that shows it first, roughly;
-once everything stands still it is worked out with more rays, on a thread of its own or, where time
+once everything stands still it is computed with more rays, on a thread of its own or, where time
 stands still between frames, within a frame. Nothing is changed in the world: its bake stays.
 """
 
@@ -158,7 +158,7 @@ class Relighter:
         return replace(snapshot, contents=self._contents[2])
 
     def close(self) -> None:
-        """Wait for what is being worked out; a second call does nothing."""
+        """Wait for what is being computed; a second call does nothing."""
         if self._pool is not None:
             self._pool.shutdown(wait=True, cancel_futures=True)
             self._pool = None

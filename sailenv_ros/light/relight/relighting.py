@@ -2,7 +2,7 @@
 
 Only rays that meet what moved, before or after, are followed: the difference between what they
 met and what they meet now is added to what was baked. A surface that was hidden, and what moved
-itself, gets its light anew. Results do not depend on the number of threads.
+itself, gets its light again. Results do not depend on the number of threads.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ class _Relighting:
         return found_far, changed, far, near
 
     def _share_of_probes(self) -> Floats:
-        """Return (P, 1): what patches get by the bake, over what they get by way of the probes.
+        """Return (P, 1): what patches get by the bake, over what they get through the probes.
 
         Probes within and behind surfaces know nothing, and four numbers are not all directions:
         near walls and in corners light that comes by the probes falls short.
@@ -338,6 +338,6 @@ class _Relighting:
 
 
 def _take(values: Floats, found: NDArray[np.uint8], change: Floats) -> None:
-    """Add what has changed, and replace what was worked out anew."""
+    """Add what has changed, and replace what was computed again."""
     values[found == 1] += change[found == 1]
     values[found == 2] = change[found == 2]

@@ -111,7 +111,7 @@ class ChunkBuilder:
         self.size += len(head) + length
 
     def seal(self) -> SealedChunk:
-        """Compress everything and begin anew."""
+        """Compress everything and begin the next chunk."""
         sealed = seal_records(self._parts, self._indexes, self._compression)
         self._parts, self._indexes, self.size = [], {}, 0
         return sealed

@@ -1,7 +1,7 @@
 """One MCAP file → where each of its messages lies, and its bytes.
 
 Reads the summary and the message indexes; a file that has none of them but is whole is walked
-through. A file that was not finished is refused by name of the command that mends it.
+through. A file that was not finished is refused by name of the command that repairs it.
 """
 
 from __future__ import annotations
@@ -220,7 +220,7 @@ class FileIndex:
 
 
 def damaged(path: Path, why: str) -> RecordingError:
-    """Return the error of a file that has to be mended first."""
+    """Return the error of a file that has to be repaired first."""
     return RecordingError(
         f"{path} is damaged ({why}); `sailenv bag recover {path}` restores what is whole of it"
     )

@@ -1,7 +1,7 @@
 """A damaged or unfinished MCAP file → a whole one with everything of it that is intact.
 
 Goes through the file from its beginning and copies each chunk whose check sum is right, without
-packing it anew. Of a file that was cut off every complete chunk is kept.
+packing it again. Of a file that was cut off every complete chunk is kept.
 """
 
 from __future__ import annotations

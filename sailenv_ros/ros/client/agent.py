@@ -175,7 +175,7 @@ depth_frame_active : bool
     ) -> Iterator[dict[str, Any]]:
         """Yield frame after frame at a rate of simulated time, the newest each time.
 
-        Whoever is slower than the rate misses frames, which shows in their `sequence`. The rate
+        A loop slower than the rate misses frames, which shows in their `sequence`. The rate
         ends with the iteration; a view asked of `get_frame` before is in these frames too.
 
         Parameters

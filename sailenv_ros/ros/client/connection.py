@@ -103,7 +103,7 @@ class Connection:
     # -- the simulator ---------------------------------------------------------------------
 
     def watch(self, is_alive: Callable[[], bool]) -> None:
-        """Have every wait break off once the simulator lives no more."""
+        """Have every wait fail once the simulator has ended."""
         self._is_alive = is_alive
 
     def simulator_lives(self) -> bool:

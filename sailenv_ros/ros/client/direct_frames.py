@@ -38,7 +38,7 @@ class DirectFrames:
     Parameters
     ----------
     connection : Connection
-        Whose waits are used: they break off when the simulator ends.
+        Whose waits are used: they fail when the simulator ends.
     sock : socket
         Owned from now on.
     """

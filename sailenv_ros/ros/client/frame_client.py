@@ -38,7 +38,7 @@ __all__ = ["FrameClient"]
 _log = logging.getLogger(__name__)
 
 QUIET_S = 1.0
-"""A sent frame of which nothing more arrives for so long is given up and asked for anew [s].
+"""A sent frame of which nothing more arrives for so long is given up and asked for again [s].
 
 Our transport profiles repair a loss in some 30 ms, but a user's own may take 3 s for it.
 """
@@ -59,7 +59,7 @@ class FrameClient:
     Attributes
     ----------
     recaptured : int
-        How often a frame was asked for anew because images did not arrive.
+        How often a frame was asked for again because images did not arrive.
     """
 
     def __init__(self, remote: RemoteSimulator, spec: AgentSpec) -> None:

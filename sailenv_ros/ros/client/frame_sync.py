@@ -2,7 +2,7 @@
 
 Messages of one agent's topics in, `Bundle`s out. Images carry a stamp and no number; the
 frame_info that closes each frame on the sender's side names its number and views. Two frames of
-one stamp (the simulation stands still) are told apart by when they were sent. Knows no ROS.
+one stamp (the simulation stands still) are distinguished by when they were sent. Knows no ROS.
 """
 
 from __future__ import annotations

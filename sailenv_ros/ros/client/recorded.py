@@ -73,7 +73,7 @@ class RecordedAgent(Sequence[dict[str, Any]]):
         return frame
 
     def seek(self, index: int) -> None:
-        """Have `get_frame` go on with the frame of that number, from 0."""
+        """Have `get_frame` continue with the frame of that number, from 0."""
         self._next = self._frames.position(index)
 
     def frame_at(self, time_s: float) -> dict[str, Any]:

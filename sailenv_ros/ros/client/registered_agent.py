@@ -131,9 +131,9 @@ class RegisteredAgent(Operations):
                 self._remote.connection.forget_services(self.id)
 
     def rejoin(self) -> None:
-        """Connect anew after `SimulatorLost`, to a simulator that runs again or is started now.
+        """Connect again after `SimulatorLost`, to a simulator that runs again or is started now.
 
-        The agent is registered as it was at first, so its pose and its frames' numbers begin anew.
+        The agent is registered as it was at first, so its pose and its frames' numbers begin again.
         """
         self._remote.connection.process.require()
         with self._lock:

@@ -86,7 +86,7 @@ class RemoteSimulator:
         return result
 
     def reconnect(self) -> None:
-        """Connect anew, to a simulator that runs again or is started now."""
+        """Connect again, to a simulator that runs again or is started now."""
         old, self._link = self._link, self._acquire()
         release(old)
 

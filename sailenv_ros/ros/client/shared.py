@@ -49,7 +49,7 @@ _lock = threading.Lock()
 
 
 def _forget_the_parents() -> None:
-    """Begin anew in a fork, where the parent's threads do not exist and its lock may be held."""
+    """Begin again in a fork, where the parent's threads do not exist and its lock may be held."""
     global _lock
     _links.clear()
     _lock = threading.Lock()

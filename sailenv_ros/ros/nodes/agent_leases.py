@@ -82,7 +82,7 @@ class AgentLeases:
     async def settle(self) -> bool:
         """Remove the agents of clients that have ended, and wait for it; say if there were any.
 
-        Before a registration, so that whoever begins anew gets its name back at once.
+        Before a registration, so that a client that begins again gets its name back at once.
         """
         self._look()
         removals = tuple(self._removals)

@@ -1,8 +1,8 @@
 """Captured frames for Agents of this machine, through shared memory instead of topics.
 
 An Agent hands over a segment of memory and asks for views; it gets the frame_info, or the refusal
-that the service gives, and finds the arrays in its memory. Whoever else subscribes to the agent's
-topics gets the frame there, as from the service. One thread for each Agent.
+that the service gives, and finds the arrays in its memory. Other subscribers of the agent's
+topics get the frame there, as from the service. One thread for each Agent.
 """
 
 from __future__ import annotations

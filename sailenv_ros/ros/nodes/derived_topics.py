@@ -66,7 +66,7 @@ class DerivedTopics:
 
     @property
     def publishers(self) -> tuple[Publisher, ...]:
-        """All of them, for whoever ends them."""
+        """All of them, to be ended together."""
         return (*self._colour.values(), *self._compressed.values())
 
     def wanted_views(self) -> frozenset[str]:

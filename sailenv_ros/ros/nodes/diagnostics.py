@@ -66,7 +66,7 @@ class FrameCounter:
                 self._timings_s[stage] += took_s
 
     def take(self, agent: str, dropped: int) -> AgentCounts:
-        """Return what was counted and begin anew."""
+        """Return what was counted and count again from 0."""
         with self._lock:
             counts = AgentCounts(
                 agent=agent, frames=self._frames, timings_s=self._timings_s, dropped=dropped

@@ -130,7 +130,7 @@ def _greet(hosted: Hosted) -> None:
 
 
 def _join(arguments: list[str], stop: StopRequest, hosted: Hosted, shown: logging.Handler) -> int:
-    """Become the node; where that cannot be, go on without ROS."""
+    """Become the node; where that cannot be, continue without ROS."""
     _link_libraries()
     importlib.invalidate_caches()
     sim_node = importlib.import_module("sailenv_ros.ros.nodes.sim_node")

@@ -36,7 +36,7 @@ class ForwardMotionTopics:
 
     @property
     def publishers(self) -> tuple[Publisher, ...]:
-        """All of them, for whoever ends them."""
+        """All of them, to be ended together."""
         return tuple(self._topics.values())
 
     def wanted_views(self) -> frozenset[str]:

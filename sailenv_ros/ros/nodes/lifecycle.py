@@ -21,7 +21,7 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class StopRequest:
-    """Becomes set once the process shall end, by a signal or by whoever calls `set`.
+    """Becomes set once the process shall end, by a signal or by a call of `set`.
 
     The handlers stay while the process cleans up, so a second signal disturbs nothing; `disarm`
     is for the very end, where Python takes its handlers away.
@@ -80,7 +80,7 @@ def stop_at_end_of(fd: int, stop: StopRequest) -> None:
 
 
 def finished_within(work: Callable[[], None], timeout_s: float) -> bool:
-    """Do something in a thread of its own; False if it was not done in time and goes on."""
+    """Do something in a thread of its own; False if it was not done in time and still runs."""
 
     def run() -> None:
         try:

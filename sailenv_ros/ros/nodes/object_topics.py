@@ -77,7 +77,7 @@ class ObjectTopics:
 
     @property
     def publishers(self) -> tuple[Publisher, ...]:
-        """All of them, for whoever ends them."""
+        """All of them, to be ended together."""
         return tuple(topic.publisher for topic in self._topics)
 
     def wanted_views(self) -> frozenset[str]:

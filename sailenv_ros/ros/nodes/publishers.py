@@ -1,7 +1,7 @@
 """`Frame` → the topics of one agent; renders nothing that nobody subscribes to.
 
 One thread takes the frames that fall due and publishes them; captured frames are published by
-whoever captured them. Holds no simulation logic.
+the thread that captured them. Holds no simulation logic.
 """
 
 from __future__ import annotations

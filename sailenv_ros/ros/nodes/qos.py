@@ -29,7 +29,7 @@ def frame_qos() -> QoSProfile:
 
 
 def latched_qos() -> QoSProfile:
-    """State that whoever comes late must know: the last message is kept for it."""
+    """State that late subscribers must know: the last message is kept for it."""
     return _last_kept(latched=True)
 
 

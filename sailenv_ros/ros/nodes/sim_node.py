@@ -174,7 +174,7 @@ def run(arguments: list[str], stop: StopRequest, hosted: Hosted | None = None) -
     stop : StopRequest
     hosted : Hosted or None
         A simulation that runs already, in a process that has the lock of its name. Owned from
-        when the node is there; if the node cannot be made, it goes on as it was. None starts one.
+        when the node is there; if the node cannot be made, it continues as it was. None starts one.
     """
     return exit_status(NODE_NAME, lambda: _run(arguments, stop, hosted))
 

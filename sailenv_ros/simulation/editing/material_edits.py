@@ -1,7 +1,7 @@
 """Other materials for what stands in a running world: objects, walls, floor, ceiling.
 
 What was asked for is written down in the words of a scene file, so that it is saved and can be
-undone. Shapes, places and ids stay; baked light stays too, and is brought up to date elsewhere.
+undone. Shapes, places and ids stay; baked light stays too, and is updated elsewhere.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Place keys for a scene file, from where an object has come to rest on its carrier.
 
-The file goes on naming the carrier, so that the object goes along when that is moved by hand.
+The file keeps naming the carrier, so that the object goes along when that is moved by hand.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Imports a model in a process of its own: bytes or a file in, an `Asset` out.
 
-Reading a stranger's model takes memory, time and Python's lock, and native code looks at every byte
+Reading an untrusted model takes memory, time and Python's lock, and native code looks at every byte
 of it. The child has limits of memory, processor time and file size and a low priority; the
-simulation goes on meanwhile, and whatever becomes of the child is a sentence.
+simulation continues meanwhile, and whatever becomes of the child is a sentence.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The work on models that goes on beside the simulation's loop: uploads and thumbnails."""
+"""The work on models that is done beside the simulation's loop: uploads and thumbnails."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ IDLE_S = 60.0
 """A process that nobody has asked anything for so long ends, and its memory is free [s]."""
 
 LOOK = 1
-"""Grows when thumbnails come to look different: those of before are made anew."""
+"""Grows when thumbnails come to look different: those of before are made again."""
 
 PNG_END = b"\0\0\0\0IEND\xaeB`\x82"
 

@@ -29,7 +29,7 @@ class WorkQueue(Generic[Piece, Result]):
     work : callable
         Does one piece, in the thread.
     idle_s : callable
-        Gives how long the thread waits for a piece before `rest` is called [s]; None is for ever.
+        Gives how long the thread waits for a piece before `rest` is called [s]; None is forever.
     rest : callable
         Called in the thread when nothing has come for so long, and at the end.
     """

@@ -111,7 +111,7 @@ class AgentOperations(Caller):
     ) -> None:
         """Move an agent to world coordinates [m] and leave its orientation; see `set_pose`.
 
-        What it faces by `set_look_at` it goes on facing.
+        It keeps facing what it faces by `set_look_at`.
         """
         here = core.agents.carried_pose(core.agents[agent], core.world)
         moved = Pose(vector("position", position), here.orientation_xyzw)

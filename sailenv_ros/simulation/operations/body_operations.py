@@ -30,7 +30,7 @@ class BodyOperations(Caller):
     def set_mover_body(core: HasWorld, body: RigidBody | None, mover: str = "") -> None:
         """Make a mover a rigid body, which forces and collisions move; with None, none any more.
 
-        It stays where it is, and what follows it goes on doing so. One that is a body already keeps
+        It stays where it is, and what follows it keeps doing so. One that is a body already keeps
         its velocity and the wrenches that act upon it.
 
         Parameters

@@ -1,4 +1,4 @@
-"""The operation that draws a scene anew at random."""
+"""The operation that draws a scene again at random."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class ChanceOperations(Caller):
         things: Sequence[Mapping[str, Any]] | str | None = None,
         record: Mapping[str, Any] | str | None = None,
     ) -> dict[str, Any]:
-        """Begin the present scene anew with values drawn at random; return the record of them.
+        """Begin the present scene again with values drawn at random; return the record of them.
 
         The same scene, seed and index give the same values. `reset` begins an epoch again with
         the values that it has, or with those of another seed.
@@ -68,7 +68,7 @@ class ChanceOperations(Caller):
         InvalidState
             If the scene draws nothing and no things are given.
         InvalidRequest, InvalidEntry
-            If it cannot be drawn; the scene goes on as it was then.
+            If it cannot be drawn; the scene continues as it was then.
 
         >>> agent.randomise(seed=3)  # doctest: +SKIP
         """

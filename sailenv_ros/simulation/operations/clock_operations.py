@@ -30,13 +30,13 @@ class ClockOperations(Caller):
     @operation(deadline_s=120.0, seed=check.optional(check.seed))
     @staticmethod
     def reset(core: BeginsScenes, seed: int | None = None) -> int:
-        """Begin the present scene anew, as it was at its start; return the new epoch.
+        """Begin the present scene again, as it was at its start; return the new epoch.
 
         Parameters
         ----------
         seed : int or None
             0 to 2^63 - 1; None keeps the present one, and every byte comes back, also of what
-            was drawn at random. With a seed that is drawn anew.
+            was drawn at random. With a seed that is drawn again.
         """
         chosen = core.seed if seed is None else seed
         core.begin(

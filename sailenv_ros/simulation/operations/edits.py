@@ -1,6 +1,6 @@
 """Operations of a history of changes: objects, lights and surroundings taken down and put back.
 
-They belong to whoever keeps such a history, here the web viewer; a program has the operations that
+They belong to the keeper of such a history, here the web viewer; a program has the operations that
 make the changes.
 """
 

@@ -33,7 +33,7 @@ class LessonOperations(Caller):
         """Begin lessons now, in the present world.
 
         Their objects leave, and come again with their lessons: where they stood at the start of
-        the scene, and with behaviours that begin anew. A reset begins those of the scene's file.
+        the scene, and with behaviours that begin again. A reset begins those of the scene's file.
 
         Parameters
         ----------

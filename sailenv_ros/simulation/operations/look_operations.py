@@ -67,7 +67,7 @@ class LookOperations(Caller):
 
         Notes
         -----
-        It does not roll. Straight above or below the point, the heading is that which the agent
+        It does not roll. Straight above or below the point, the heading is the one that the agent
         has by itself. An object that is despawned or leaves is looked for where it was last.
         `set_pose` and `set_rotation` end it, `set_position` does not.
 
@@ -106,7 +106,7 @@ class LookOperations(Caller):
     ) -> None:
         """Have a mover face an object or a point from now on; without either, nothing any more.
 
-        What follows the mover is turned with it. It goes on along its waypoints, or as commands
+        What follows the mover is turned with it. It continues along its waypoints, or as commands
         say: forward is then towards what it faces.
 
         Parameters

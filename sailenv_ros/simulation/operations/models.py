@@ -1,4 +1,4 @@
-"""Operations on models of the catalogue; they run beside the simulation, which goes on."""
+"""Operations on models of the catalogue; they run beside the simulation, which continues."""
 
 from __future__ import annotations
 

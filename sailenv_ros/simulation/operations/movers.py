@@ -127,7 +127,7 @@ class MoverOperations(Caller):
 
         Notes
         -----
-        What follows the mover moves with it, and flow shows that as motion. It goes on from the
+        What follows the mover moves with it, and flow shows that as motion. It continues from the
         leg, and the part of it, that it had reached.
         """
         found = core.world.mover(mover)

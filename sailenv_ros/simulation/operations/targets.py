@@ -91,7 +91,7 @@ class RunsTime(HasClock, Protocol):
 
 
 class BeginsScenes(HasWorld, Protocol):
-    """Scenes that begin anew."""
+    """Scenes that can begin again."""
 
     epoch: int
     additions: SceneOverlay
@@ -118,7 +118,7 @@ class BeginsScenes(HasWorld, Protocol):
     def randomise_now(
         self, seed: int | None, index: int | None, things: object, record: object
     ) -> dict[str, Any]:
-        """Begin the scene anew with drawn values; return the record of them."""
+        """Begin the scene again with drawn values; return the record of them."""
 
 
 class HasLessons(Protocol):

@@ -1,7 +1,7 @@
 """Lets objects come and go as the scene says: by their own times, and in lessons.
 
 A world and its description in; at the physics steps at which something is due, the world is changed
-and told anew. Counts steps, knows no clock.
+and described again. Counts steps, knows no clock.
 """
 
 from __future__ import annotations

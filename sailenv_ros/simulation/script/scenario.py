@@ -1,7 +1,7 @@
 """Scenarios as SAILenv writes them, turned into objects as scene files have them.
 
 A mapping (of JSON or YAML) in, entries for a scene's `objects` out. Which assets there are and
-whether an entry is right is checked by whoever builds the scene.
+whether an entry is right is checked where the scene is built.
 """
 
 from __future__ import annotations

@@ -136,6 +136,45 @@ def test_where_nothing_moves_nothing_changes(scene: BakedScene) -> None:
         assert np.array_equal(before.probe_bounced, after.probe_bounced)
 
 
+def arrays(baked: BakedLight) -> list[np.ndarray]:
+    """All that relighting may change."""
+    return [
+        array
+        for layer in baked.layers
+        for array in (layer.direct, layer.bounced, layer.probe_direct, layer.probe_bounced)
+    ]
+
+
+def test_the_bake_stays_as_it_is(scene: BakedScene) -> None:
+    """Moves and paint make light of their own, from the same bytes each time."""
+    before = [array.tobytes() for array in arrays(scene.baked)]
+    first = moved(scene, QUICK)
+    relit(scene, [], QUICK, threads=2, painted={1: BLUE.model})
+    again = moved(scene, QUICK)
+    assert [array.tobytes() for array in arrays(scene.baked)] == before
+    for one, two in zip(arrays(first), arrays(again), strict=True):
+        assert one.tobytes() == two.tobytes()
+    assert [array.tobytes() for array in arrays(first)] != before
+
+
+def test_probes_inside_what_moved_keep_their_light(scene: BakedScene) -> None:
+    """Nobody sees them there, and what stands around would be lit by them; others change."""
+    grid = scene.baked.probes
+    places = np.stack(np.indices(grid.shape)[::-1], axis=-1).reshape(-1, 3)
+    points = places * grid.spacing_m + grid.origin_m
+    middle = points[np.linalg.norm(points - (0.5, 0.5, 1.5), axis=1).argmin()]
+    change = Change(id=2, before=HERE.matrix(), after=Pose(tuple(middle)).matrix())
+    got = relit(scene, [change], FINE, threads=2)
+    inside = (np.abs(points - middle) < (0.5, 0.3, 0.5)).all(axis=1)
+    assert inside.any()
+    changed = np.zeros(len(points), bool)
+    for before, after in zip(scene.baked.layers, got.layers, strict=True):
+        change_of = after.probe_bounced.astype(float) - before.probe_bounced.astype(float)
+        changed |= np.abs(change_of).reshape(len(points), -1).max(axis=1) > 0.0
+    assert not changed[inside].any()
+    assert changed[~inside].sum() > 10
+
+
 def test_the_result_does_not_depend_on_threads(scene: BakedScene) -> None:
     """One thread and three give the same bytes."""
     one, three = moved(scene, threads=1), moved(scene, threads=3)
