@@ -81,7 +81,7 @@ class Triangulation(SceneModel):
         noisy = depth + rest * noise.correlated(height, width, self.correlation)
         steps = np.rint(np.float32(self._scale / self.disparity_step) / noisy)
         with np.errstate(divide="ignore"):
-            measured: Numbers = np.float32(self._scale / self.disparity_step) / steps
+            measured: Numbers = np.divide(np.float32(self._scale / self.disparity_step), steps)
         measured[~(steps > 0) | self._in_shadow(surfaces)] = np.nan
         return measured
 
