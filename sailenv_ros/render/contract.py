@@ -12,10 +12,16 @@ from typing import Any, Literal, Protocol, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 
-__all__ = ["BACKEND_NAMES", "BackendName", "RenderBackend", "RenderedViews"]
+__all__ = [
+    "BACKEND_NAMES",
+    "BackendName",
+    "RenderBackend",
+    "RenderedViews",
+    "require_drawable",
+]
 
 BackendName: TypeAlias = Literal["auto", "native", "gl"]
 
@@ -40,6 +46,16 @@ class RenderedViews:
     views: Mapping[str, NDArray[Any]]
     depth: NDArray[np.float32] | None
     timings_s: Mapping[str, float] = field(default_factory=dict)
+
+
+def require_drawable(intrinsics: CameraIntrinsics) -> None:
+    """Refuse a lens that no renderer draws through.
+
+    Raises
+    ------
+    InvalidRequest
+    """
+    intrinsics.require_pinhole("renderers")
 
 
 class RenderBackend(Protocol):
@@ -79,7 +95,8 @@ class RenderBackend(Protocol):
         Raises
         ------
         UnknownName, InvalidRequest
-            If there is no such view, or none that this renderer can make.
+            If there is no such view, or none that this renderer can make, or none through this
+            lens.
         """
 
     def close(self) -> None:

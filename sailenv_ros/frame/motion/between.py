@@ -89,6 +89,8 @@ def motion(begin: AnyFrame, end: AnyFrame) -> Motion:
     """
     first, last = frame_state_of(begin, "first frame"), frame_state_of(end, "other frame")
     require_common_past(first, last)
+    for moment in (first, last):
+        moment.camera.intrinsics.require_pinhole("motions between frames")
     table = motion_table(first.observed_poses(), last.observed_poses())
     depth, instance = first.surfaces("first frame")
     to_depth, to_instance = last.surfaces("other frame")

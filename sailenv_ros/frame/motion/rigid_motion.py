@@ -146,5 +146,6 @@ def object_points(
     if count:
         own_from_camera = invert(poses.world_from_instance) @ poses.camera.world_from_camera
         transforms[1:] = own_from_camera[:, :3]
+    poses.camera.intrinsics.require_pinhole("coordinates on objects")
     lens = poses.camera.intrinsics.lens_record
     return transform_points(depth, instance, rows, transforms, lens, threads=threads)

@@ -171,8 +171,12 @@ def _found(
         if not _within(pixels, moment).all():
             accepted = f"within the picture: -0.5 to {lens.width - 0.5} and {lens.height - 0.5}"
             raise InvalidRequest("pixel", pixels[~_within(pixels, moment)][0], accepted)
-        directions = lens.rays_through(pixels) @ moment.camera.world_from_camera[:3, :3].T
-        eye = np.broadcast_to(moment.camera.world_from_camera[:3, 3], directions.shape)
+        turn, shift = (
+            moment.camera.world_from_camera[:3, :3],
+            moment.camera.world_from_camera[:3, 3],
+        )
+        origins, directions = lens.sight_lines(pixels)
+        eye, directions = origins @ turn.T + shift, directions @ turn.T
         hits = geometry.cast(states, eye, directions)
         # The third coordinate of a ray is 1, so that its distances are depths.
         met = np.flatnonzero((hits.instance > 0) & (hits.distance <= lens.far_m))

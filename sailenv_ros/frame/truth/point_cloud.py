@@ -74,10 +74,13 @@ def points_of(frame: FrameData, *, in_world: bool = True) -> PointCloud:
     See `Frame.points`.
     """
     lens, depth = frame.camera.intrinsics, frame["depth"].reshape(-1)
-    pixels = np.flatnonzero(np.isfinite(depth))
-    z = depth[pixels].astype(np.float64)
+    seen = np.isfinite(depth)
+    if not lens.is_pinhole:
+        seen &= np.isfinite(lens.rays()[..., 0].reshape(-1))
+    pixels = np.flatnonzero(seen)
     rows, columns = np.divmod(pixels, lens.width)
-    x, y, _ = np.moveaxis(lens.rays_through(np.stack([columns, rows], axis=-1)), -1, 0) * z
+    places = np.stack([columns, rows], axis=-1)
+    x, y, z = np.moveaxis(lens.points_at(places, depth[pixels]), -1, 0)
     pose = frame.camera.world_from_camera if in_world else np.eye(4)
     count = len(pixels)
     xyz = np.empty((count, 3), np.float32)

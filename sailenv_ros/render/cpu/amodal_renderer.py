@@ -12,6 +12,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.native.drawing import AmodalDrawing
 from sailenv_ros.native.library import thread_count
+from sailenv_ros.render.contract import require_drawable
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import native_view
 from sailenv_ros.types.camera import Camera
@@ -46,8 +47,9 @@ class AmodalRenderer:
         Raises
         ------
         InvalidRequest
-            If there is no object of that id.
+            If there is no object of that id, or nothing is drawn through this lens.
         """
+        require_drawable(camera.intrinsics)
         self._table.show(snapshot.contents)
         parts = self._table.opaque
         poses = np.ascontiguousarray(snapshot.world_from_body)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import RenderError
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.render.contract import RenderedViews
+from sailenv_ros.render.contract import RenderedViews, require_drawable
 from sailenv_ros.render.picture.annotate import annotate, with_depth
 from sailenv_ros.render.picture.post_pass import PostPass
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
@@ -64,6 +64,7 @@ class DrawingRenderer(ABC):
         if self._closed:
             raise RenderError("the renderer was closed")
         wanted = frozenset(checked_views(views, supported=self.supported_views))
+        require_drawable(camera.intrinsics)
         keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
         timings: Timings = {}
         with self._drawing_context():

@@ -9,6 +9,7 @@ does not define. What kernels compute is tested elsewhere. Add a function for ea
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -16,11 +17,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import NativeLibraryError
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import QUICK
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.lens import LENS
+from sailenv_ros.native.lens_models import (
+    lens_models,
+    lens_reach,
+    project_points,
+    unproject_places,
+)
 from sailenv_ros.native.library import using_instruction_set
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, move_points, transform_points
@@ -90,6 +98,22 @@ def surfaces(*sizes: tuple[int, int]) -> Iterator[NDArray[np.float32]]:
 
 PLAIN = np.array([(500.0, 500.0, 0.5, 0.5, 0.05, 60.0)], LENS)
 WILD = np.array([(np.nan, 1e30, 1e30, -np.inf, np.nan, np.nan)], LENS)
+
+
+def drive_lenses() -> None:
+    """Coefficients, limits, points and places that are no numbers, for every model."""
+    rng = np.random.default_rng(11)
+    wild = np.array(NUMBERS)
+    for model in (*lens_models().values(), None):
+        number = -1 if model is None else model.number
+        for count in (0, 1, 2000):
+            for coefficients in (np.zeros(12), rng.choice(wild, 12), rng.normal(0.0, 0.3, 12)):
+                for limit in (1.0, *NUMBERS):
+                    with contextlib.suppress(NativeLibraryError):
+                        lens_reach(number, tuple(coefficients))
+                        points, places = rng.choice(wild, (count, 3)), rng.choice(wild, (count, 2))
+                        project_points(number, coefficients, limit, points, threads=THREADS[1])
+                        unproject_places(number, coefficients, limit, places, threads=THREADS[1])
 
 
 def drive_annotate() -> None:
@@ -302,6 +326,7 @@ def drive_instance_measures() -> None:
 DRIVERS: tuple[Callable[[], None], ...] = (
     drive_self_test,
     drive_png_data,
+    drive_lenses,
     drive_annotate,
     drive_motion,
     drive_rays,
