@@ -12,6 +12,7 @@ from typing import Any, Literal, Protocol, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 
@@ -38,7 +39,8 @@ class RenderedViews:
     views : mapping of str to array
         The wanted views as `frame.VIEWS` says; fresh arrays, the caller's own.
     depth : (H, W) float32 or None
-        The depth view, wanted or not, if it was made on the way: the next frame's past.
+        The depth view, wanted or not, if it was made on the way: the next frame's past. Through a
+        lens other than a pin-hole the view ``range``.
     timings_s : mapping of str to float
         Wall time of each stage [s].
     """
@@ -55,7 +57,9 @@ def require_drawable(intrinsics: CameraIntrinsics) -> None:
     ------
     InvalidRequest
     """
-    intrinsics.require_pinhole("renderers")
+    if not intrinsics.is_pinhole and intrinsics.law.model.parallel:
+        accepted = "a model whose rays meet in one point, since renderers draw through no other"
+        raise InvalidRequest("distortion_model", intrinsics.distortion_model, accepted)
 
 
 class RenderBackend(Protocol):

@@ -7,14 +7,13 @@ names none of its own.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.types.listed_views import Views, listed_views
+from sailenv_ros.types.view_spec import ImageCodec, ViewDisplay, ViewSource, ViewSpec
 
 __all__ = [
     "ALWAYS_MADE",
@@ -29,104 +28,6 @@ __all__ = [
     "view_spec",
     "views_of",
 ]
-
-ViewSource: TypeAlias = Literal["lighting", "annotation", "geometry", "motion"]
-"""Source of a view: the lit picture; arithmetic on depth and instance id, which all back ends
-share; an attribute of the surface, which renderers write as it is; or arithmetic on a frame and
-the one that follows it, which no renderer makes (`sailenv_ros.frame.motion`)."""
-
-ViewDisplay: TypeAlias = Literal[
-    "colour", "depth", "category", "instance", "flow", "direction", "mask", "place", "displacement"
-]
-"""Display of a view as a picture; `pictures.colours` has a function for each."""
-
-ImageCodec: TypeAlias = Literal["jpeg", "png"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ViewSpec:
-    """Specification of one view.
-
-    Attributes
-    ----------
-    name : str
-    dtype : numpy dtype
-    channels : int
-        1 means an array (H, W), otherwise (H, W, channels).
-    encoding : str
-        Encoding on a ROS topic (`sensor_msgs/image_encodings`).
-    meaning : str
-        One line: what a value is, in which unit and frame.
-    unit : str
-        Of the values, as it is shown to people; empty for none.
-    invalid : str
-        Values that stand for something else than a measurement; empty if there are none.
-    source : {'lighting', 'annotation', 'geometry', 'motion'}
-        What makes it. A view of 'geometry' is an output of the geometry pass of the same name.
-    needs_past : bool
-        True if the view refers to an earlier frame of the same camera.
-    needs_past_depth : bool
-        True if the depth of that earlier frame is needed too.
-    needs_next : bool
-        True if the view refers to the next frame of the same camera: it is known one frame late.
-    by_default : bool
-        True if an agent gets it without asking.
-    wide_dtype : numpy dtype or None
-        Type of its values where they are too large for `dtype`; None if they never are.
-    wide_encoding : str
-        Encoding on a ROS topic of these.
-    display : str
-        How it is shown as a picture.
-    color_topic : bool
-        True if it has a topic `<view>/color` with that picture.
-    compressed_topic : {'jpeg', 'png'} or None
-        Codec of the topic `<view>/compressed`; None if there is no such topic. A picture may lose
-        something, labels may not.
-    png_per_unit : float or None
-        Steps per unit of its 16-bit PNG files; None if files hold the values themselves, or the
-        picture of values that are no integers.
-    validity_of : str
-        The view whose values it says to exist; empty for others.
-    """
-
-    name: str
-    dtype: np.dtype[Any]
-    channels: int = 1
-    encoding: str
-    meaning: str
-    display: ViewDisplay
-    source: ViewSource
-    unit: str = ""
-    invalid: str = ""
-    needs_past: bool = False
-    needs_past_depth: bool = False
-    needs_next: bool = False
-    by_default: bool = False
-    color_topic: bool = False
-    compressed_topic: ImageCodec | None = None
-    png_per_unit: float | None = None
-    validity_of: str = ""
-    wide_dtype: np.dtype[Any] | None = None
-    wide_encoding: str = ""
-
-    @property
-    def dtypes(self) -> tuple[np.dtype[Any], ...]:
-        """Types that its array may have."""
-        return (self.dtype,) if self.wide_dtype is None else (self.dtype, self.wide_dtype)
-
-    def encoding_of(self, dtype: np.dtype[Any]) -> str:
-        """Return the encoding on a ROS topic of an array of one of `dtypes`."""
-        return self.wide_encoding if dtype == self.wide_dtype else self.encoding
-
-    @property
-    def is_label(self) -> bool:
-        """True if values are ids or truth values: between two of them there is nothing."""
-        return self.display in ("category", "instance", "mask")
-
-    def shape(self, height: int, width: int) -> tuple[int, ...]:
-        """Return the shape of this view's array for a picture of that size."""
-        return (height, width) if self.channels == 1 else (height, width, self.channels)
-
 
 _SPECS = (
     ViewSpec(
@@ -146,7 +47,7 @@ _SPECS = (
         encoding="32FC1",
         meaning="depth along the optical axis",
         unit="m",
-        invalid="+inf nothing hit, NaN nearer than the near plane",
+        invalid="+inf nothing hit, NaN nearer than the near plane or not seen by the lens",
         display="depth",
         source="annotation",
         by_default=True,
@@ -212,6 +113,25 @@ _SPECS = (
         source="annotation",
         needs_past=True,
         needs_past_depth=True,
+    ),
+    ViewSpec(
+        name="range",
+        dtype=np.dtype(np.float32),
+        encoding="32FC1",
+        meaning="distance along the ray, also through a lens that sees behind the camera",
+        unit="m",
+        invalid="+inf nothing hit, NaN nearer than the near plane or not seen by the lens",
+        display="depth",
+        source="annotation",
+        png_per_unit=1000.0,
+    ),
+    ViewSpec(
+        name="lens_valid",
+        dtype=np.dtype(np.bool_),
+        encoding="8UC1",
+        meaning="True where a ray leads through the lens to the pixel's centre",
+        display="mask",
+        source="annotation",
     ),
     ViewSpec(
         name="normals",

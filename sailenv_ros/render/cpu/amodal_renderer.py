@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame.lens_rays import depth_shares
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.native.drawing import AmodalDrawing
 from sailenv_ros.native.library import thread_count
@@ -64,13 +65,17 @@ class AmodalRenderer:
         order = np.argsort(ids, kind="stable")
         lens = camera.intrinsics
         results, depths = self._drawing.draw(
-            native_view(camera), self._table.instances(poses, None), parts, starts
+            native_view(camera, lit=False), self._table.instances(poses, None), parts, starts
         )
         crops = []
         at = 0
         for row in results.tolist():
             height, width = (0, 0) if row[6] < 0 else (row[9] - row[7] + 1, row[8] - row[6] + 1)
-            crops.append(depths[at : at + height * width].reshape(height, width))
+            crop = depths[at : at + height * width].reshape(height, width)
+            if crop.size and not lens.is_pinhole:
+                shares = depth_shares(lens)[row[7] : row[9] + 1, row[6] : row[8] + 1]
+                crop = np.where(np.isposinf(crop), crop, crop * shares)
+            crops.append(crop)
             at += height * width
         found = results[order]
         kept = tuple(crops[row] for row in order.tolist())

@@ -45,7 +45,7 @@ class OpeningWindows:
         """
         self._know(snapshot.contents)
         outside = self._outside
-        if outside is None or self._shell_rows is None:
+        if outside is None or self._shell_rows is None or not camera.intrinsics.is_pinhole:
             return None
         eye = camera.world_from_camera[:3, 3]
         if not ((eye > outside.low_m) & (eye < outside.high_m)).all():

@@ -243,7 +243,7 @@ ENTRIES = {
     "view": (
         "version: 1\nagents: [{name: a, views: [rgb, dept]}]\n",
         "2:33: agents[0].views[1]: must be one of: rgb, depth, category, instance, flow, "
-        "flow_valid, occlusion, normals, albedo, uv, object_coords (did you mean 'depth'?), got "
+        "flow_valid, occlusion, range, lens_valid, normals, albedo, uv, object_coords (did you mean 'depth'?), got "
         "'dept'",
     ),
     "view named twice": (

@@ -416,13 +416,13 @@ def test_a_picture_of_too_many_samples_changes_nothing(core: SynchronousSimulati
 
 def test_a_lens_that_nothing_draws_through_changes_nothing(core: SynchronousSimulation) -> None:
     """Neither an agent nor its intrinsics: else each of its frames would fail."""
-    wide = CameraIntrinsics(distortion_model="equidistant", distortion=(0.0, 0.0, 0.0, 0.0))
-    with pytest.raises(InvalidRequest, match="distortion_model must be 'pinhole'"):
-        core.register_agent(replace(spec(rate_hz=0.0), intrinsics=wide))
+    parallel = CameraIntrinsics(distortion_model="orthographic", fx_px=90.0, fy_px=90.0)
+    with pytest.raises(InvalidRequest, match="distortion_model must be a model whose rays meet"):
+        core.register_agent(replace(spec(rate_hz=0.0), intrinsics=parallel))
     core.register_agent(spec(rate_hz=0.0))
     before = core.info.agents
-    with pytest.raises(InvalidRequest, match="distortion_model must be 'pinhole'"):
-        core.set_intrinsics(wide, agent="eye")
+    with pytest.raises(InvalidRequest, match="distortion_model must be a model whose rays meet"):
+        core.set_intrinsics(parallel, agent="eye")
     assert core.info.agents == before
 
 
