@@ -20,8 +20,8 @@ __all__ = [
 ]
 
 CUBE_FACES = 6
-FACE_CELLS, BLOCK_CELLS = 64, 8
-LENS_TILE_SHAPE = 8, 16
+FACE_CELLS, BLOCK_CELLS = 128, 8
+LENS_TILE_SHAPE = 8, 8
 """Rows and columns of a tile."""
 
 UNKNOWN_BEND = 1e30

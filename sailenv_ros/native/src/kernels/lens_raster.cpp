@@ -11,7 +11,7 @@ namespace {
 constexpr float LEAST_DEPTH_M = 1e-3f;  // corners nearer than that have no place on a face
 constexpr float NEAR_CELLS = 1.0f, WIDE_CELLS = 4.0f;  // as far as `bend` and `wide_bend` are known
 // Triangles whose bounds are wider or higher than that are drawn tile by tile.
-constexpr int32_t WIDE_SAMPLES = 24, HIGH_SAMPLES = 16;
+constexpr int32_t WIDE_SAMPLES = 16, HIGH_SAMPLES = 8;
 
 void include(SampleBox& box, const SampleBox& other) {
     box.x0 = std::min(box.x0, other.x0);
@@ -55,79 +55,123 @@ bool is_beyond_a_side(const CubeFace& face, const float (&corners)[3][3]) {
     return false;
 }
 
-LANES_INLINE f8 function_at(const float* edge, f8 x, f8 y) {
-    return edge[0] * x + (edge[1] * y + edge[2]);
-}
+// A function a x + b y + c of a place. A copy: stores must not make it be loaded again.
+struct PlaceFunction {
+    float a, b, c;
 
-// The most that an edge's function is at a tile's samples, as these compute it.
-float most_within(const float* edge, const LensTile& tile) {
-    const float x = edge[0] > 0.0f ? tile.high[0] : tile.low[0];
-    const float y = edge[1] > 0.0f ? tile.high[1] : tile.low[1];
-    return edge[0] * x + (edge[1] * y + edge[2]);
-}
+    explicit PlaceFunction(const float* f) : a(f[0]), b(f[1]), c(f[2]) {}
+    LANES_METHOD f8 at(f8 x, f8 y) const { return a * x + (b * y + c); }
+    // The most and the least that it is at a tile's samples, as these compute it.
+    LANES_METHOD float most_within(const LensTile& tile) const {
+        return a * (a > 0.0f ? tile.high[0] : tile.low[0]) +
+               (b * (b > 0.0f ? tile.high[1] : tile.low[1]) + c);
+    }
+    LANES_METHOD float least_within(const LensTile& tile) const {
+        return a * (a > 0.0f ? tile.low[0] : tile.high[0]) +
+               (b * (b > 0.0f ? tile.low[1] : tile.high[1]) + c);
+    }
+};
 
+// A triangle and where it is drawn.
 template <bool MASKED, bool SEVERAL>
-LANES_INLINE void draw_rows(const Triangle& t, const LensTable& lens, const MaskedTriangle& masked,
-                            const Part& part, const Projection& p, uint32_t number, int32_t top,
-                            int32_t bottom, int32_t left, int32_t right, int64_t stride,
-                            uint32_t* visible, float* inverse_depth) {
-    const float least0 = least_inside(t.edge), least1 = least_inside(t.edge + 3),
-                least2 = least_inside(t.edge + 6);
-    const i8 tag = splat(static_cast<int32_t>(number));
-    for (int32_t row = top; row <= bottom; row++) {
-        const float *xs = lens.x + row * lens.stride, *ys = lens.y + row * lens.stride;
-        const uint8_t* faces = lens.face + row * lens.stride;
-        float* near_row = inverse_depth + row * stride;
-        for (int32_t x = left; x <= right; x += 8) {
-            const f8 at = load(xs + x), down = load(ys + x), before = load(near_row + x);
-            const f8 n = function_at(t.inverse_depth, at, down);
-            i8 drawn = (function_at(t.edge, at, down) >= least0) &
-                       (function_at(t.edge + 3, at, down) >= least1) &
-                       (function_at(t.edge + 6, at, down) >= least2) & (n > before) &
-                       (n <= p.greatest_inverse_depth);
-            if (SEVERAL) drawn &= lies_on(faces + x, t.face);
-            if (!any(drawn)) continue;
-            if (MASKED) {
-                drawn = opaque_pixels(t, masked, part, at, down, steps_at(lens, row, x), n, drawn);
-            }
-            store(near_row + x, drawn ? n : before);
-            if (visible != nullptr) {
-                int32_t* seen = reinterpret_cast<int32_t*>(visible + row * stride) + x;
-                store(seen, drawn ? tag : load(seen));
+struct LensDrawing {
+    const Triangle& t;
+    const LensTable& lens;
+    const Part& part;
+    const PlaceFunction edge0, edge1, edge2, nearness;
+    const float least0, least1, least2, greatest;
+    const int32_t face;
+    const i8 tag;
+    const int64_t stride;
+    int32_t* visible;  // or null
+    float* inverse_depth;
+    MaskedTriangle masked;
+
+    LensDrawing(const Triangle& triangle, uint32_t number, const Part& of, const Projection& p,
+                int64_t row_stride, uint32_t* seen, float* depths)
+        : t(triangle),
+          lens(*p.table),
+          part(of),
+          edge0(t.edge),
+          edge1(t.edge + 3),
+          edge2(t.edge + 6),
+          nearness(t.inverse_depth),
+          least0(least_inside(t.edge)),
+          least1(least_inside(t.edge + 3)),
+          least2(least_inside(t.edge + 6)),
+          greatest(p.greatest_inverse_depth),
+          face(t.face),
+          tag(splat(static_cast<int32_t>(number))),
+          stride(row_stride),
+          visible(reinterpret_cast<int32_t*>(seen)),
+          inverse_depth(depths) {
+        if (MASKED) masked = masked_triangle(t, part);
+    }
+
+    // Draws a rectangle of samples; `WITHIN` if they all lie within the edges.
+    template <bool WITHIN>
+    LANES_METHOD void draw(int32_t top, int32_t bottom, int32_t left, int32_t right) const {
+        for (int32_t row = top; row <= bottom; row++) {
+            const float *xs = lens.x + row * lens.stride, *ys = lens.y + row * lens.stride;
+            const uint8_t* faces = lens.face + row * lens.stride;
+            float* near_row = inverse_depth + row * stride;
+            for (int32_t x = left; x <= right; x += 8) {
+                const f8 at = load(xs + x), down = load(ys + x), before = load(near_row + x);
+                const f8 n = nearness.at(at, down);
+                i8 drawn = (n > before) & (n <= greatest);
+                if (!WITHIN) {
+                    drawn &= (edge0.at(at, down) >= least0) & (edge1.at(at, down) >= least1) &
+                             (edge2.at(at, down) >= least2);
+                    if (SEVERAL) drawn &= lies_on(faces + x, face);
+                }
+                if (!any(drawn)) continue;
+                if (MASKED) {
+                    drawn =
+                        opaque_pixels(t, masked, part, at, down, steps_at(lens, row, x), n, drawn);
+                }
+                store(near_row + x, drawn ? n : before);
+                if (visible != nullptr) {
+                    int32_t* seen = visible + row * stride + x;
+                    store(seen, drawn ? tag : load(seen));
+                }
             }
         }
     }
-}
+
+    // Draws some rows of a tile, whose columns are drawn at once.
+    LANES_METHOD void draw_tile(const LensTile& tile, int32_t top, int32_t bottom,
+                                int32_t left) const {
+        if (!(tile.faces >> face & 1)) return;
+        if (edge0.most_within(tile) < least0 || edge1.most_within(tile) < least1 ||
+            edge2.most_within(tile) < least2) {
+            return;
+        }
+        const bool within = edge0.least_within(tile) >= least0 &&
+                            edge1.least_within(tile) >= least1 &&
+                            edge2.least_within(tile) >= least2;
+        if (within) {
+            draw<true>(top, bottom, left, left);
+        } else {
+            draw<false>(top, bottom, left, left);
+        }
+    }
+};
 
 template <bool MASKED, bool SEVERAL>
 void draw_tiles(const Triangle& t, uint32_t number, const Part& part, const Projection& p,
                 int32_t y0, int32_t y1, int64_t stride, uint32_t* visible, float* inverse_depth) {
-    const LensTable& lens = *p.table;
-    MaskedTriangle masked;
-    if (MASKED) masked = masked_triangle(t, part);
-    const auto draw = [&](int32_t top, int32_t bottom, int32_t left, int32_t right) {
-        draw_rows<MASKED, SEVERAL>(t, lens, masked, part, p, number, top, bottom, left, right,
-                                   stride, visible, inverse_depth);
-    };
+    const LensDrawing<MASKED, SEVERAL> drawing(t, number, part, p, stride, visible, inverse_depth);
     if (t.x1 - t.x0 < WIDE_SAMPLES && y1 - y0 < HIGH_SAMPLES) {
-        draw(y0, y1, t.x0, t.x1);
+        drawing.template draw<false>(y0, y1, t.x0, t.x1);
         return;
     }
-    const float least[3] = {least_inside(t.edge), least_inside(t.edge + 3),
-                            least_inside(t.edge + 6)};
+    const LensTable& lens = *p.table;
     for (int32_t row = y0 / LENS_TILE_ROWS; row <= y1 / LENS_TILE_ROWS; row++) {
         const LensTile* tiles = lens.tiles + row * lens.tile_columns;
         const int32_t top = std::max(y0, row * LENS_TILE_ROWS),
                       bottom = std::min(y1, (row + 1) * LENS_TILE_ROWS - 1);
         for (int32_t k = t.x0 / LENS_TILE_COLUMNS; k <= t.x1 / LENS_TILE_COLUMNS; k++) {
-            const LensTile& tile = tiles[k];
-            if (!(tile.faces >> t.face & 1)) continue;
-            if (most_within(t.edge, tile) < least[0] || most_within(t.edge + 3, tile) < least[1] ||
-                most_within(t.edge + 6, tile) < least[2]) {
-                continue;
-            }
-            draw(top, bottom, std::max<int32_t>(t.x0, k * LENS_TILE_COLUMNS),
-                 std::min<int32_t>(t.x1, (k + 1) * LENS_TILE_COLUMNS - 1));
+            drawing.draw_tile(tiles[k], top, bottom, k * LENS_TILE_COLUMNS);
         }
     }
 }
@@ -198,7 +242,7 @@ bool reach_through_lens(const CubeFace& face, const CornerPlace* const* places,
     }
     // A place lies off the plane through the corners' places by at most a third of the square of
     // the longest side, and these by an eighth.
-    const float off = bend * (0.5f * cells * cells + 0.25f) + 0.02f;
+    const float off = bend * (0.4f * cells * cells + 0.15f) + 0.01f;
     const auto first = [&](float p, float q, float r, int16_t least) {
         const float at = std::ceil(std::min(p, std::min(q, r)) - off);
         return at > least ? static_cast<int16_t>(std::min(at, 32000.0f)) : least;

@@ -15,10 +15,10 @@
 namespace sailenv {
 
 constexpr int32_t CUBE_FACES = 6;
-constexpr int32_t FACE_CELLS = 64;  // of a face, along each side
-constexpr int32_t BLOCK_CELLS = 8;  // of a block of them, along each side
-constexpr int32_t LENS_TILE_COLUMNS = 16, LENS_TILE_ROWS = 8;  // of samples
-constexpr int32_t NO_FACE = -1;                                // where the lens sees nothing
+constexpr int32_t FACE_CELLS = 128;                           // of a face, along each side
+constexpr int32_t BLOCK_CELLS = 8;                            // of a block of them, along each side
+constexpr int32_t LENS_TILE_COLUMNS = 8, LENS_TILE_ROWS = 8;  // of samples
+constexpr int32_t NO_FACE = -1;                               // where the lens sees nothing
 constexpr float UNKNOWN_BEND = 1e30f;
 
 // Where a place of a face lies in the picture, at the nodes of a grid of cells [samples]. Within a

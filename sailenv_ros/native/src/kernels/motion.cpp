@@ -261,54 +261,102 @@ void ray_of(const sailenv::Lens& lens, const double* rays, int64_t at, int64_t u
     }
 }
 
+// Where a chunk's points are in the other camera's frame; there is room for steps of eight.
+struct MovedPoints {
+    double ray[3][CHUNK + 8], at[3][CHUNK + 8], step[3][CHUNK + 8];
+    double reach[CHUNK + 8], shift[CHUNK + 8];  // see `Affine`
+};
+
+// Moves the points of neighbours that move alike; steps of eight as in `move_run`.
+void move_points(const double* rows, int64_t first, int64_t end, MovedPoints& p) {
+    for (int64_t k = first; k < end; k += 8) {
+        const d8 reach = vector_of(p.reach + k), shift = vector_of(p.shift + k);
+        const d8 x = reach * vector_of(p.ray[0] + k), y = reach * vector_of(p.ray[1] + k),
+                 z = reach * vector_of(p.ray[2] + k);
+        const d8 own[3] = {x, y, z};
+        for (int axis = 0; axis < 3; axis++) {
+            const double* r = rows + 4 * axis;
+            const d8 step = r[0] * x + r[1] * y + r[2] * z + shift * r[3];
+            put(p.step[axis] + k, step);
+            put(p.at[axis] + k, own[axis] + step);
+        }
+    }
+}
+
 // The same as `move_run` where one of the lenses is no pin-hole. `project(point, place)` tells
 // where the other lens has a point, as a place for x and y of `Lens`; false if it does not see it.
 template <class Project>
 void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int64_t count,
                      const Project& project) {
     const int64_t at = v * in.width + u;
+    const uint16_t* ids = in.instance + at;
     const sailenv::Lens& to = *in.to_lens;
     const double rate = 1.0 / in.duration;
+    MovedPoints p;
     Places places;
     for (int64_t k = 0; k < count; k++) {
-        const uint16_t asked = in.row_of_instance[in.instance[at + k]];
-        const int64_t row = asked < in.rows ? asked : 0;
         const double z = in.depth[at + k];
-        const bool at_infinity = z == INFINITE;
-        double ray[3], point[3], step[3], moved[3], place[2];
+        double ray[3];
         ray_of(*in.from_lens, in.from_rays, at + k, u + k, v, ray);
-        const bool known = row != 0 && z == z && ray[2] == ray[2];
-        for (int j = 0; j < 3; j++) point[j] = (at_infinity ? 1.0 : z) * ray[j];
-        transformed(in.motions + 12 * row, point, at_infinity ? 0.0 : 1.0, step);
-        for (int j = 0; j < 3; j++) moved[j] = point[j] + step[j];
-        const bool rests = in.same_lens != 0 && step[0] == 0.0 && step[1] == 0.0 && step[2] == 0.0;
-        const bool valid = known && (rests || project(moved, place));
-        double right = 0.0, down = 0.0;
-        if (valid && !rests) {
-            right = sailenv::pixel_u(to, place[0]) - static_cast<double>(u + k);
-            down = sailenv::pixel_v(to, place[1]) - static_cast<double>(v);
+        for (int axis = 0; axis < 3; axis++) p.ray[axis][k] = ray[axis];
+        p.reach[k] = z == INFINITE ? 1.0 : z;
+        p.shift[k] = z == INFINITE ? 0.0 : 1.0;
+    }
+    for (int64_t k = count; k < count + 8; k++) {
+        for (int axis = 0; axis < 3; axis++) p.ray[axis][k] = 0.0;
+        p.reach[k] = p.shift[k] = 0.0;
+    }
+    for (int64_t first = 0; first < count;) {
+        int64_t end = first + 1;
+        while (end < count && ids[end] == ids[first]) end++;
+        const uint16_t asked = in.row_of_instance[ids[first]];
+        const int64_t row = asked < in.rows ? asked : 0;
+        move_points(in.motions + 12 * row, first, end, p);
+        const bool has_motion = row != 0;
+        for (int64_t k = first; k < end; k++) {
+            const bool known = has_motion && p.reach[k] == p.reach[k] && p.ray[2][k] == p.ray[2][k];
+            const bool rests = in.same_lens != 0 && p.step[0][k] == 0.0 && p.step[1][k] == 0.0 &&
+                               p.step[2][k] == 0.0;
+            const double moved[3] = {p.at[0][k], p.at[1][k], p.at[2][k]};
+            double place[2] = {0.0, 0.0};
+            const bool valid = known && (rests || project(moved, place));
+            places.known[k] = known;
+            places.valid[k] = valid;
+            places.u[k] = places.v[k] = 0.0;
+            if (!valid || rests) continue;
+            places.u[k] = sailenv::pixel_u(to, place[0]) - static_cast<double>(u + k);
+            places.v[k] = sailenv::pixel_v(to, place[1]) - static_cast<double>(v);
         }
-        places.flow[2 * k] = valid ? static_cast<float>(rate * right) : NOT_A_NUMBER;
-        places.flow[2 * k + 1] = valid ? static_cast<float>(rate * down) : NOT_A_NUMBER;
-        places.valid[k] = valid;
-        places.known[k] = known;
-        places.u[k] = right;
-        places.v[k] = down;
-        const double length =
-            std::sqrt(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2]);
-        places.z_to[k] = at_infinity ? INFINITE : in.to_model < 0 ? moved[2] : length;
         if (wanted.scene) {
-            transformed(in.displacements + 12 * row, point, 1.0, step);
-            for (int j = 0; j < 3; j++) {
-                in.scene_flow[3 * (at + k) + j] =
-                    known && !at_infinity ? static_cast<float>(step[j]) : NOT_A_NUMBER;
+            for (int64_t k = first; k < end; k++) {
+                double point[3], step[3];
+                for (int axis = 0; axis < 3; axis++) point[axis] = p.reach[k] * p.ray[axis][k];
+                transformed(in.displacements + 12 * row, point, 1.0, step);
+                const bool there = places.known[k] && p.shift[k] != 0.0;
+                for (int j = 0; j < 3; j++) {
+                    in.scene_flow[3 * (at + k) + j] =
+                        there ? static_cast<float>(step[j]) : NOT_A_NUMBER;
+                }
             }
         }
+        first = end;
     }
-    const size_t size = static_cast<size_t>(count);
-    if (wanted.flow) memcpy(in.flow + 2 * at, places.flow, 2 * sizeof(float) * size);
-    if (in.valid != nullptr) memcpy(in.valid + at, places.valid, size);
-    if (wanted.place) look_up(in, places, v, u, count);
+    if (wanted.flow) {
+        for (int64_t k = 0; k < count; k++) {
+            const bool valid = places.valid[k] != 0;
+            float* flow = in.flow + 2 * (at + k);
+            flow[0] = valid ? static_cast<float>(rate * places.u[k]) : NOT_A_NUMBER;
+            flow[1] = valid ? static_cast<float>(rate * places.v[k]) : NOT_A_NUMBER;
+        }
+    }
+    if (in.valid != nullptr) memcpy(in.valid + at, places.valid, static_cast<size_t>(count));
+    if (!wanted.place) return;
+    for (int64_t k = 0; k < count; k++) {
+        const double x = p.at[0][k], y = p.at[1][k], z = p.at[2][k];
+        const double reach = in.to_model < 0 ? z : std::sqrt(x * x + y * y + z * z);
+        places.z_to[k] = p.shift[k] == 0.0 ? INFINITE : reach;
+    }
+    look_up(in, places, v, u, count);
 }
 
 int32_t move_through_bent_lenses(int64_t threads, const Motion& in, Wanted wanted) {

@@ -91,6 +91,11 @@ void multiply_by_maps(Chunk& c, float bias, float most) {
 
 // How rays change from pixel to pixel, from changes of their places on faces.
 Vec3x8 face_steps(const Shading& s, const Chunk& c, int32_t i, const float* x, const float* y) {
+    const int32_t first = c.face[i];
+    if (first != NO_FACE && !any(load(c.face + i) != first)) {
+        const Mat3& turn = s.world_from_face[first];
+        return turn.column(0) * load(x + i) + turn.column(1) * load(y + i);
+    }
     Vec3x8 steps;
     for (int32_t k = 0; k < 8; k++) {
         const int32_t at = i + k, face = c.face[at] == NO_FACE ? 0 : c.face[at];
