@@ -16,6 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.lens_rays import depth_shares, unit_rays
+from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -297,6 +298,81 @@ def test_depth_of_planes_to_the_border(native: NativeRenderer) -> None:
         shares = depth_shares(camera.intrinsics)
         reachable = 2.0 / np.where(shares > 0.0, shares, np.nan) < 1900.0
         assert there[reachable].all()
+
+
+@pytest.mark.parametrize("name", ["plumb_bob", "fisheye 220", "equirectangular"])
+def test_objects_alone_cover_the_pixels_that_they_have(native: NativeRenderer, name: str) -> None:
+    """What nothing hides: each thing drawn alone has the pixels and depths of the picture."""
+    things = room_of_things()
+    camera = camera_through(name, Pose.from_rpy_deg((0.1, 0.2, 0.1), (3.0, 8.0, 20.0)))
+    renderer = AmodalRenderer()
+    masks = renderer.draw(snapshot_of(things), camera)
+    drawn = [int(number) for number in masks.ids[masks.pixels > 20] if number > 6]
+    assert len(drawn) >= 2
+    for number in drawn:
+        alone = seen(native, snapshot_of([things[number - 1]]), camera, "instance", "depth")
+        covered = alone["instance"] > 0
+        np.testing.assert_array_equal(masks.mask(number), covered)
+        np.testing.assert_array_equal(masks.depth(number)[covered], alone["depth"][covered])
+    renderer.close()
+
+
+@pytest.mark.parametrize("name", ["plumb_bob", "fisheye 190", "equirectangular"])
+def test_more_samples_make_the_same_picture(
+    native: NativeRenderer, room_01: WorldSnapshot, name: str
+) -> None:
+    """Labels keep their bytes; smooth edges come nearer to 4 x 4 samples than one sample does."""
+    camera = camera_through(name, look_at((1.1, 0.4, 1.5), (-1.2, -0.3, 0.8)))
+    plain = PictureSettings(smooth_edges=False)
+    made = [
+        seen(native, room_01, replace(camera, picture=picture), "rgb", "instance")
+        for picture in (plain, PictureSettings(), replace(plain, supersampling=4))
+    ]
+    valid = np.isfinite(unit_rays(camera.intrinsics)[..., 2])
+    inner = cv2.erode(valid.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
+    for other in made[1:]:
+        np.testing.assert_array_equal(other["instance"], made[0]["instance"])
+    best = made[2]["rgb"][inner].astype(float)
+    off = [np.abs(views["rgb"][inner] - best).mean() for views in made[:2]]
+    assert off[1] < 0.75 * off[0] < 4.0
+
+
+@pytest.mark.parametrize("name", ["plumb_bob", "fisheye 190"])
+def test_a_mirror_shows_what_a_pin_holes_does(native: NativeRenderer, name: str) -> None:
+    """A wall of one colour, seen in a mirror, has the colour of a pin-hole's picture."""
+    red = model_of(wall_mesh(60.0, 60.0), base_colour=(0.8, 0.1, 0.1, 1.0))
+    glass = model_of(wall_mesh(2.0, 2.0), metallic=1.0, roughness=0.0)
+    scene = snapshot_of(
+        [
+            Thing(glass, Pose((2.0, 0.0, 0.0))),
+            Thing(red, Pose.from_rpy_deg((-3.0, 0, 0), (0, 0, 180))),
+        ]
+    )
+    straight = Camera(intrinsics=CameraIntrinsics(width=WIDTH, height=HEIGHT))
+    bent = camera_through(name)
+    middle = np.s_[70:80, 95:105]
+    pictures = [seen(native, scene, camera, "rgb")["rgb"][middle] for camera in (straight, bent)]
+    assert pictures[0][..., 0].min() > 2 * pictures[0][..., 1].max()
+    assert np.abs(pictures[1].astype(int).mean((0, 1)) - pictures[0].mean((0, 1))).max() < 2.0
+
+
+@pytest.mark.parametrize("name", ["plumb_bob", "fisheye 220", "equirectangular"])
+def test_places_on_objects_are_where_rays_meet_them(native: NativeRenderer, name: str) -> None:
+    """The view `object_coords`: to 0.2 mm, also behind the camera."""
+    things = room_of_things()
+    scene = snapshot_of(things)
+    camera = camera_through(name, Pose.from_rpy_deg((0.1, 0.2, 0.1), (3.0, 8.0, 20.0)))
+    views = seen(native, scene, camera, "range", "instance", "object_coords")
+    hits = cast(scene, camera)
+    away = hits.away_from_edges() & np.isfinite(hits.depth)
+    rays = unit_rays(camera.intrinsics)
+    eye = rays[away] * hits.depth[away][:, None]
+    world = eye @ camera.world_from_camera[:3, :3].T + camera.world_from_camera[:3, 3]
+    own = np.empty_like(world)
+    for row, pose in enumerate(scene.world_from_body):
+        chosen = hits.row[away] == row
+        own[chosen] = (world[chosen] - pose[:3, 3]) @ pose[:3, :3]
+    np.testing.assert_allclose(views["object_coords"][away], own, atol=2e-4)
 
 
 def _grown(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -48,9 +48,11 @@ from sailenv_ros.rays.triangle_tree import in_leaves, triangle_tree
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import Observation
 from tests.support.baked import baked, chart, layer
 from tests.support.hostile_scenes import hostile_scenes
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of
@@ -225,6 +227,18 @@ def drive_client_views() -> None:
                 )
 
 
+def bent_lenses_of(width: int, height: int) -> list[CameraIntrinsics]:
+    """Lenses that see little more than ahead, to the side, and all around."""
+    size = {"width": width, "height": height}
+    fisheye = {"distortion_model": "equidistant", "distortion": (0.0,) * 4, "max_angle_deg": 95.0}
+    sphere = {"fx_px": width / 6.3, "fy_px": height / 3.15}
+    return [
+        CameraIntrinsics(distortion_model="plumb_bob", distortion=(-0.2, 0.05, 0.0, 0.0), **size),
+        CameraIntrinsics(fx_px=0.3 * height, fy_px=0.3 * height, **fisheye, **size),
+        CameraIntrinsics(distortion_model="equirectangular", **sphere, **size),
+    ]
+
+
 def drive_drawing() -> None:
     """Poses that are no numbers, triangles without extent, huge and far ones, the eye inside."""
     for threads in THREADS:
@@ -235,8 +249,11 @@ def drive_drawing() -> None:
                 for times in (1, 2):
                     camera = camera_at(width=width, height=height)
                     camera = replace(camera, picture=PictureSettings(supersampling=times))
-                    with np.errstate(all="ignore"):
-                        renderer.render(snapshot, None, camera, ("rgb", "depth", "normals"))
+                    for lens in (camera.intrinsics, *bent_lenses_of(width, height)):
+                        seen = replace(camera, intrinsics=lens)
+                        past = Observation(snapshot=snapshot, camera=seen)
+                        with np.errstate(all="ignore"):
+                            renderer.render(snapshot, past, seen, ("rgb", "flow", "normals"))
         renderer.close()
     renderer = NativeRenderer(threads=2)
     scene = snapshot_of([Thing(model_of(box_mesh(1.0), alpha="blend"), Pose((0.0, 0.0, 0.0)))])
@@ -305,8 +322,10 @@ def drive_alone() -> None:
             snapshot = make()
             for width, height in ((8, 8), (97, 61)):
                 drawing = AmodalRenderer(threads=threads)
-                with np.errstate(all="ignore"):
-                    drawing.draw(snapshot, camera_at(width=width, height=height))
+                camera = camera_at(width=width, height=height)
+                for lens in (camera.intrinsics, *bent_lenses_of(width, height)):
+                    with np.errstate(all="ignore"):
+                        drawing.draw(snapshot, replace(camera, intrinsics=lens))
                 drawing.close()
     drawing = AmodalRenderer(threads=2)
     around = snapshot_of([Thing(model_of(box_mesh(4.0), double_sided=True), Pose())])
