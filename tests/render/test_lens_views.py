@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.lens_rays import depth_shares, unit_rays
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.render.scene.opening_window import OpeningWindows
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
@@ -373,6 +374,31 @@ def test_places_on_objects_are_where_rays_meet_them(native: NativeRenderer, name
         chosen = hits.row[away] == row
         own[chosen] = (world[chosen] - pose[:3, 3]) @ pose[:3, :3]
     np.testing.assert_allclose(views["object_coords"][away], own, atol=2e-4)
+
+
+def test_the_window_around_openings_changes_no_pixel(
+    native: NativeRenderer, room_01: WorldSnapshot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What lies outside is drawn within the openings' rectangle: the views stay the same."""
+    windows = OpeningWindows()
+    narrowed = 0
+    for number in range(24):
+        turn = 0.7 * number
+        eye = (0.9 * np.cos(1.3 * number), 0.8 * np.sin(1.3 * number), 0.9 + 0.05 * number)
+        target = (eye[0] + np.cos(turn), eye[1] + np.sin(turn), eye[2] + 0.3 * np.sin(2.1 * number))
+        camera = camera_through("plumb_bob", look_at(eye, target))
+        found = windows.of(room_01, camera)
+        if found is None:
+            continue
+        left, top, right, bottom = found[1]
+        narrowed += (right - left + 1) * (bottom - top + 1) < 0.9 * WIDTH * HEIGHT
+        made = seen(native, room_01, camera, "rgb", "instance", "range")
+        with monkeypatch.context() as patched:
+            patched.setattr(OpeningWindows, "of", lambda *_: None)
+            whole = seen(native, room_01, camera, "rgb", "instance", "range")
+        for view, values in whole.items():
+            np.testing.assert_array_equal(made[view], values, err_msg=f"{view} of view {number}")
+    assert narrowed > 5
 
 
 def _grown(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:

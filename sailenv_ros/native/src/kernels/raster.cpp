@@ -57,7 +57,36 @@ Projection clipped(const Projection& p, const Instances& instances) {
     return result;
 }
 
-void set_sides(InstanceFrame& frame, const Projection& p, const CubeFace* face) {
+// Least and greatest x and y of samples on a face.
+struct FaceBounds {
+    double low[2], high[2];
+};
+
+// Of those of a rectangle, give or take a tile.
+FaceBounds bounds_within(const Projection& p, int32_t number) {
+    const LensTable& lens = *p.table;
+    const CubeFace& face = lens.faces[number];
+    FaceBounds found = {{1e9, 1e9}, {-1e9, -1e9}};
+    bool all = false, none = true;
+    for (int32_t y = p.y0 / LENS_TILE_ROWS; y <= p.y1 / LENS_TILE_ROWS; y++) {
+        for (int32_t x = p.x0 / LENS_TILE_COLUMNS; x <= p.x1 / LENS_TILE_COLUMNS; x++) {
+            const LensTile& tile = lens.tiles[y * lens.tile_columns + x];
+            if (!(tile.faces >> number & 1)) continue;
+            none = false;
+            // Of several faces a tile has no bounds.
+            all |= tile.faces != 1 << number;
+            for (int axis = 0; axis < 2; axis++) {
+                found.low[axis] = std::min<double>(found.low[axis], tile.low[axis]);
+                found.high[axis] = std::max<double>(found.high[axis], tile.high[axis]);
+            }
+        }
+    }
+    if (none) return {{1e9, 1e9}, {1e9, 1e9}};
+    if (all) return {{face.low[0], face.low[1]}, {face.high[0], face.high[1]}};
+    return found;
+}
+
+void set_sides(InstanceFrame& frame, const Projection& p, const FaceBounds* face) {
     const double* m = frame.eye_from_object;
     double wide[4];
     if (face != nullptr) {
@@ -229,17 +258,17 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
 }
 
 // The same through a lens that bends lines.
-void set_lens_bounds(ClusterRows& r, int32_t count, const CubeFace& face) {
+void set_lens_bounds(ClusterRows& r, int32_t count, const Projection& p, const CubeFace& face) {
     for (int32_t k = 0; k < count; k++) {
         const CornerPlace* const places[3] = {r.place[0][k], r.place[1][k], r.place[2][k]};
         float corners[3][3];
         for (int j = 0; j < 9; j++) corners[j / 3][j % 3] = r.corner[j][k];
         SampleBox reach = {1, 1, 0, 0};
         if (!reach_through_lens(face, places, corners, reach)) reach = {1, 1, 0, 0};
-        r.x0[k] = reach.x0;
-        r.x1[k] = reach.x1;
-        r.y0[k] = reach.y0;
-        r.y1[k] = reach.y1;
+        r.x0[k] = static_cast<float>(std::max<int32_t>(reach.x0, p.x0));
+        r.x1[k] = static_cast<float>(std::min<int32_t>(reach.x1, p.x1));
+        r.y0[k] = static_cast<float>(std::max<int32_t>(reach.y0, p.y0));
+        r.y1[k] = static_cast<float>(std::min<int32_t>(reach.y1, p.y1));
     }
 }
 
@@ -289,7 +318,7 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
     if (p.table != nullptr) {
         const CornerPlace* places = set.places.data() + corners_at;
         for (int32_t k = 0; k < 3 * count; k++) r.place[k % 3][k / 3] = places + corners[k];
-        set_lens_bounds(r, count, p.table->faces[seen.face]);
+        set_lens_bounds(r, count, p, p.table->faces[seen.face]);
     } else {
         pad(r, count);
         set_bounds<PERSPECTIVE>(r, (count + 7) & ~7, p);
@@ -469,15 +498,25 @@ void set_frames(Scratch& scratch, const Instances& instances, const double* eye_
         double face_from_world[12];
         if (face != nullptr) turn_rows(face->turn, eye_from_world, face_from_world);
         const double* onto = face == nullptr ? eye_from_world : face_from_world;
+        FaceBounds bounds{}, clipped_bounds{};
+        if (face != nullptr) {
+            bounds = {{face->low[0], face->low[1]}, {face->high[0], face->high[1]}};
+            if (instances.clipped != 0) {
+                clipped_bounds = bounds_within(clipped(projection, instances), number);
+            }
+        }
         for (int64_t k = 0; k < instances.count; k++) {
             InstanceFrame& frame =
                 scratch.frames[static_cast<size_t>(number * instances.count + k)];
             const double *pose = instances.world_from_body + 16 * k,
                          *scale = instances.scales + 3 * k;
             compose(onto, pose, scale, frame.eye_from_object);
-            set_sides(frame,
-                      k + 1 == instances.clipped ? clipped(projection, instances) : projection,
-                      face);
+            const bool is_clipped = k + 1 == instances.clipped;
+            if (face == nullptr) {
+                set_sides(frame, is_clipped ? clipped(projection, instances) : projection, nullptr);
+            } else {
+                set_sides(frame, projection, is_clipped ? &clipped_bounds : &bounds);
+            }
             set_eye(frame);
             // Normals go by the inverse transpose: the rotation with the reciprocal scale.
             for (int j = 0; j < 3; j++) {
