@@ -7,10 +7,14 @@ stands on its pose topic.
 from __future__ import annotations
 
 from sailenv_msgs.msg import AgentInfo
+from sailenv_msgs_py.intrinsics_fields import (
+    INTRINSICS_FIELDS,
+    intrinsics_fields,
+    intrinsics_from_fields,
+)
 from sailenv_msgs_py.mover_msgs import look_at_from_msg, look_at_to_msg
 from sailenv_msgs_py.picture_msgs import picture_from_msg, picture_to_msg
 from sailenv_ros.types.agents import AgentSpec
-from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.views import FIVE_VIEWS
 
@@ -21,10 +25,7 @@ def agent_spec_to_msg(spec: AgentSpec) -> AgentInfo:
     """Make the message of an agent, less its start pose."""
     return AgentInfo(
         name=spec.name,
-        **{
-            name: number if INTRINSICS_LIMITS[name].whole else float(number)
-            for name, number in spec.intrinsics.numbers().items()
-        },
+        **intrinsics_fields(spec.intrinsics),
         depth_range_m=float(spec.depth_range_m),
         rate_hz=float(spec.rate_hz),
         views=list(spec.views),
@@ -43,10 +44,9 @@ def agent_spec_from_msg(msg: AgentInfo, *, pose: Pose | None = None) -> AgentSpe
     InvalidRequest
         If a name, size, angle, distance, rate, view or setting is out of its range.
     """
-    intrinsics = CameraIntrinsics(**{name: getattr(msg, name) for name in INTRINSICS_LIMITS})
     return AgentSpec(
         name=msg.name,
-        intrinsics=intrinsics,
+        intrinsics=intrinsics_from_fields({name: getattr(msg, name) for name in INTRINSICS_FIELDS}),
         depth_range_m=msg.depth_range_m,
         rate_hz=msg.rate_hz,
         views=tuple(msg.views) or FIVE_VIEWS,

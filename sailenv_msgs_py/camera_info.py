@@ -1,64 +1,93 @@
-"""Intrinsics of a pin-hole camera to and from `sensor_msgs/CameraInfo`.
+"""Intrinsics of a camera to and from `sensor_msgs/CameraInfo`.
 
 Integer pixels are pixel centres, so a central optical axis meets the picture at ((W - 1)/2,
-(H - 1)/2), as `image_geometry` and `depth_image_proc` read it. The near and far plane have no place
-there.
+(H - 1)/2), as `image_geometry` and `depth_image_proc` read it. The near and far plane and the image
+circle have no place there.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
-import numpy as np
 from sensor_msgs.msg import CameraInfo
 from std_msgs.msg import Header
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.lens_settings import PINHOLE_FOV
 
 __all__ = ["camera_info_from_intrinsics", "intrinsics_from_camera_info"]
 
+_PLUMB_BOB = "plumb_bob"
+_COEFFICIENTS = 5
+"""Of `plumb_bob`, as `image_geometry` reads them; a lens may have the first four alone."""
+
+_TILTED = 14
+"""Coefficients of OpenCV's law with a tilted sensor, the last two; without the tilt it is ours."""
+
 
 def camera_info_from_intrinsics(intrinsics: CameraIntrinsics, header: Header) -> CameraInfo:
-    """Make the message: no distortion, no rectification, P = [K | 0]."""
-    k = intrinsics.K
-    projection = np.hstack([k, np.zeros((3, 1))])
+    """Make the message: model, D and K of the lens, no rectification, P = [K | 0].
+
+    A pin-hole is a `plumb_bob` without distortion. Models that ROS has no name for have ours.
+    """
+    model, coefficients = intrinsics.distortion_model, [*intrinsics.distortion]
+    if model == "pinhole":
+        model = _PLUMB_BOB
+    if model == _PLUMB_BOB:
+        coefficients += [0.0] * (_COEFFICIENTS - len(coefficients))
     return CameraInfo(
         header=header,
         height=intrinsics.height,
         width=intrinsics.width,
-        distortion_model="plumb_bob",
-        d=[0.0] * 5,
-        k=k.ravel(),
-        r=np.eye(3).ravel(),
-        p=projection.ravel(),
+        distortion_model=model,
+        d=coefficients,
+        k=intrinsics.K.ravel(),
+        r=intrinsics.R.ravel(),
+        p=intrinsics.P.ravel(),
     )
 
 
 def intrinsics_from_camera_info(
-    msg: CameraInfo, *, near_m: float = 0.05, far_m: float = 100.0
+    msg: CameraInfo, *, near_m: float = 0.05, far_m: float = 100.0, max_angle_deg: float = 0.0
 ) -> CameraIntrinsics:
     """Read intrinsics.
+
+    Parameters
+    ----------
+    msg : CameraInfo
+    near_m, far_m : float
+        Clip distances [m].
+    max_angle_deg : float
+        Where the image circle ends [deg]; 0 if it ends where the law does.
 
     Raises
     ------
     InvalidRequest
-        If the camera is distorted, its pixels are not square or its axis is out of bounds: this
-        package has no such cameras.
+        If the model is not known, its coefficients do not fit it, or the axis is out of bounds.
     """
     fx, fy, cx, cy = msg.k[0], msg.k[4], msg.k[2], msg.k[5]
-    if any(msg.d):
-        raise InvalidRequest("distortion", list(msg.d), "none")
-    if not fy > 0.0 or not math.isclose(fx, fy, rel_tol=1e-9):
-        raise InvalidRequest("focal lengths fx, fy", (fx, fy), "equal and above 0 [px]")
-    return CameraIntrinsics(
-        width=msg.width,
-        height=msg.height,
-        # Its last bits come from rounding, which must not push 1 degree below the least angle.
-        vertical_fov_deg=round(math.degrees(2.0 * math.atan(0.5 * msg.height / fy)), 12),
-        near_m=near_m,
-        far_m=far_m,
-        # As above: an axis in the centre stays there.
-        cx_offset_px=round(cx - 0.5 * (msg.width - 1), 6),
-        cy_offset_px=round(cy - 0.5 * (msg.height - 1), 6),
-    )
+    if not (fx > 0.0 and fy > 0.0):
+        raise InvalidRequest("focal lengths fx, fy", (fx, fy), "above 0 [px]")
+    lens: dict[str, Any] = {
+        "width": msg.width,
+        "height": msg.height,
+        "near_m": near_m,
+        "far_m": far_m,
+        "max_angle_deg": max_angle_deg,
+        # Its last bits come from rounding: an axis in the centre stays there.
+        "cx_offset_px": round(cx - 0.5 * (msg.width - 1), 6),
+        "cy_offset_px": round(cy - 0.5 * (msg.height - 1), 6),
+    }
+    coefficients = [*msg.d]
+    if any(coefficients) or msg.distortion_model not in ("", _PLUMB_BOB):
+        if len(coefficients) == _TILTED and not any(coefficients[12:]):
+            coefficients = coefficients[:12]
+        lens |= {"distortion_model": msg.distortion_model, "distortion": tuple(coefficients)}
+    # As above: rounding must not push 1 degree below the least angle.
+    fov_deg = round(math.degrees(2.0 * math.atan(0.5 * msg.height / fy)), 12)
+    is_square = math.isclose(fx, fy, rel_tol=1e-9)
+    if "distortion_model" in lens or not is_square or PINHOLE_FOV.refused(fov_deg):
+        return CameraIntrinsics(**lens, fx_px=fx, fy_px=fy)
+    return CameraIntrinsics(**lens, vertical_fov_deg=fov_deg)

@@ -47,12 +47,12 @@ def point_cloud_to_msg(frame: Frame, header: Header) -> PointCloud2:
     UnknownName
         If the frame has no depth.
     """
-    rays, depth = frame.camera.intrinsics.rays(), frame["depth"]
+    depth = frame["depth"]
     height, width = depth.shape
     table = np.zeros((height, width), POINT)
-    z = np.where(np.isfinite(depth), depth, np.nan).astype(np.float64)
-    table["x"], table["y"] = z * rays[..., 0], z * rays[..., 1]
-    table["z"] = z
+    points = frame.camera.intrinsics.unproject(depth)
+    for axis, name in enumerate("xyz"):
+        table[name] = points[..., axis]
     if "rgb" in frame.views:
         for channel, name in enumerate("rgb"):
             table[name] = frame["rgb"][..., channel]

@@ -16,6 +16,7 @@ import numpy as np
 import sailenv_msgs.srv as srv
 from sailenv_msgs_py.contact_msgs import contact_to_msg
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
+from sailenv_msgs_py.intrinsics_fields import intrinsics_fields, intrinsics_from_fields
 from sailenv_msgs_py.object_msgs import (
     keys_to_json,
     to_json,
@@ -34,7 +35,6 @@ from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.simulation.operations.argument_checks import pose_of
 from sailenv_ros.types.agents import AgentPose
-from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
 from sailenv_ros.types.contacts import Contact
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.picture_settings import NAMES
@@ -223,12 +223,11 @@ def read_background(given: Arguments) -> Arguments:
 
 
 def write_intrinsics(given: Arguments) -> Arguments:
-    camera: CameraIntrinsics = given["intrinsics"]
-    return dict(camera.numbers())
+    return intrinsics_fields(given["intrinsics"])
 
 
 def read_intrinsics(given: Arguments) -> Arguments:
-    return {"intrinsics": CameraIntrinsics(**{name: given[name] for name in INTRINSICS_LIMITS})}
+    return {"intrinsics": intrinsics_from_fields(given)}
 
 
 def write_random_pose(given: Arguments) -> Arguments:

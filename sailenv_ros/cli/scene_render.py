@@ -19,6 +19,7 @@ from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.labels import CategoryTable
+from sailenv_ros.types.lens_settings import PINHOLE_FOV
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.validation import checked_integer
 from sailenv_ros.types.views import FIVE_VIEWS, VIEWS
@@ -98,7 +99,7 @@ def _check(args: argparse.Namespace) -> None:
         raise InvalidRequest("--plain", f"{count} pictures", accepted)
     INTRINSICS_LIMITS["width"].integer("--width", args.width)
     INTRINSICS_LIMITS["height"].integer("--height", args.height)
-    INTRINSICS_LIMITS["vertical_fov_deg"].number("--fov", args.fov)
+    PINHOLE_FOV.number("--fov", args.fov)
     checked_integer("--columns", args.columns, 1, 1000)
     for name in args.views:
         if name not in VIEWS:

@@ -10,12 +10,13 @@ from pydantic import Field
 from sailenv_ros.authoring.viewpoints.rule_table import camera_rules, checked_rule
 from sailenv_ros.errors import InvalidEntry
 from sailenv_ros.scene.field_types import Choice, Number, Text, Vector, optional
-from sailenv_ros.scene.fields import Fraction, Name, Position, Rule, SceneModel
+from sailenv_ros.scene.fields import Fraction, Name, Position, Rule
 from sailenv_ros.scene.placing import Aimed
 from sailenv_ros.scene.randomise.selectors import WhichObjects
-from sailenv_ros.scene.rules import at_most_one, few_samples, within_half
+from sailenv_ros.scene.rules import at_most_one
+from sailenv_ros.scene.spec_lens import LensSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
-from sailenv_ros.types.camera import INTRINSICS_LIMITS, MAX_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.validation import is_finite_number
 
 __all__ = [
@@ -32,14 +33,11 @@ __all__ = [
 
 Range: TypeAlias = tuple[float, float]
 
-_Size: TypeAlias = Annotated[int, Number.within(INTRINSICS_LIMITS["width"])]
-_Offset: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["cx_offset_px"])]
 _Metres: TypeAlias = Annotated[float, Number(least=0.0, most=1e3, unit="m")]
 _Degrees: TypeAlias = Annotated[float, Number(least=-90.0, most=90.0, unit="deg")]
 _Turn: TypeAlias = Annotated[float, Number(least=-720.0, most=720.0, unit="deg/s")]
 _Speed: TypeAlias = Annotated[float, Number(least=0.0, most=20.0, unit="m/s")]
 _ENDS = Vector(2, "two numbers [lowest, highest], or one for both", one_for_all=True)
-_LENS = CameraIntrinsics()
 
 
 def ordered(*keys: str) -> Rule:
@@ -56,14 +54,8 @@ def ordered(*keys: str) -> Rule:
     return rule
 
 
-class CameraModel(SceneModel):
+class CameraModel(LensSpec):
     """Base of all cameras of a data set, which see each clip at the same time."""
-
-    rules: ClassVar[tuple[Rule, ...]] = (
-        few_samples(MAX_SIZE_PX, {"width": _LENS.width, "height": _LENS.height}),
-        within_half("cx_offset", "width", _LENS.width),
-        within_half("cy_offset", "height", _LENS.height),
-    )
 
     name: Annotated[
         str,
@@ -72,19 +64,6 @@ class CameraModel(SceneModel):
             "a lower-case letter, then lower-case letters, digits or underscores, at most 51",
         ),
     ] = Field(default="camera", description="unique among the cameras of the recipe")
-    width: _Size = Field(default=640, description="of its pictures [px]")
-    height: _Size = Field(default=480, description="of its pictures [px]")
-    vertical_fov: Annotated[float, Number.within(INTRINSICS_LIMITS["vertical_fov_deg"])] = Field(
-        default=_LENS.vertical_fov_deg, description="full vertical angle of view [deg]"
-    )
-    cx_offset: _Offset = Field(
-        default=_LENS.cx_offset_px,
-        description="from the picture's centre to the optical axis, to the right [px]",
-    )
-    cy_offset: _Offset = Field(
-        default=_LENS.cy_offset_px,
-        description="from the picture's centre to the optical axis, down [px]",
-    )
     picture: PictureSpec = Field(
         default_factory=PictureSpec, description="exposure, tone curve, noise of its pictures"
     )
@@ -92,13 +71,7 @@ class CameraModel(SceneModel):
     @property
     def intrinsics(self) -> CameraIntrinsics:
         """Of its pictures."""
-        return CameraIntrinsics(
-            width=self.width,
-            height=self.height,
-            vertical_fov_deg=self.vertical_fov,
-            cx_offset_px=self.cx_offset,
-            cy_offset_px=self.cy_offset,
-        )
+        return self.lens()
 
 
 class AgentCamera(CameraModel):

@@ -122,7 +122,7 @@ def compile_library(
         for isa, isa_flags in flags_of.items():
             for path in sorted((sources / "kernels").glob("*.cpp")):
                 jobs.append((isa, path, (*flags, *isa_flags, f"-DSAILENV_ISA={isa}")))
-        headers = _hash_of(sorted([*sources.glob("*.h"), *sources.glob("kernels/*.h")]))
+        headers = _hash_of(sorted(sources.rglob("*.h")))
         with ThreadPoolExecutor(max(1, len(os.sched_getaffinity(0)))) as pool:
             made = list(
                 pool.map(lambda job: _compile(compiler, job[1], job[2], headers, kept), jobs)

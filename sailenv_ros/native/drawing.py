@@ -12,6 +12,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.lens_tables import CUBE_FACE, LENS_TABLE, LENS_TILE
 from sailenv_ros.native.library import Kernel, checked
 from sailenv_ros.native.render_types import (
     DRAW_LIST,
@@ -257,6 +258,9 @@ def structure_sizes() -> dict[str, tuple[int, int]]:
         "view": VIEW,
         "outputs": OUTPUTS,
         "layer_sum": LAYER_SUM,
+        "lens_table": LENS_TABLE,
+        "cube_face": CUBE_FACE,
+        "lens_tile": LENS_TILE,
     }
     sizes = np.zeros(len(ours), np.int64)
     _STRUCTURES(sizes)

@@ -6,23 +6,25 @@ homogeneous) in another one's, so it has moved in the picture by
     (f' - f) x + (cx' - cx) + f' (dX - x dZ) / (Z + dZ),   (dX, dY, dZ) = D X
 
 and the same in y: exactly 0 where the lenses are equal and D is 0, with a rounding error that is
-relative to the displacement. Points at infinity have X = (x, y, 1) without translation. Where the
-transforms come from stands in `frame.motion.rigid_motion`.
+relative to the displacement. Points at infinity have X = (x, y, 1) without translation. Through
+lenses that are no pin-hole the point is projected by their model, and does not move where D X is 0.
+Where the transforms come from stands in `frame.motion.rigid_motion`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.lens import LENS
+from sailenv_ros.native.lens_models import MOST_COEFFICIENTS
 from sailenv_ros.native.library import checked
 from sailenv_ros.native.records import Fields, RecordKernel
 
-__all__ = ["MOTION_OUTPUTS", "move_points", "transform_points"]
+__all__ = ["MOTION_OUTPUTS", "BentLenses", "move_points", "transform_points"]
 
 _PIXELS: tuple[Fields, ...] = (
     ("integer", "height width"),
@@ -33,7 +35,12 @@ _MOVE = RecordKernel(
     "motion",
     *_PIXELS,
     ("array", "motions displacements from_lens to_lens"),
-    ("integer", "to_height to_width"),
+    ("integer", "bent"),
+    ("array", "from_rays"),
+    ("integer", "to_model"),
+    ("array", "to_coefficients"),
+    ("number", "to_limit"),
+    ("integer", "same_lens to_height to_width"),
     ("array", "to_depth to_instance"),
     ("number", "tolerance duration"),
     ("array", "flow scene_flow valid occluded out_of_view hidden"),
@@ -41,8 +48,33 @@ _MOVE = RecordKernel(
 _TRANSFORM = RecordKernel(
     "transform_points",
     *_PIXELS,
-    ("array", "transforms lens points"),
+    ("array", "transforms lens rays points"),
 )
+
+
+class BentLenses(NamedTuple):
+    """Two lenses of which at least one is no pin-hole.
+
+    Attributes
+    ----------
+    from_rays : (H, W, 3) float64 or None
+        Unit rays of the one picture's pixels, along which its depth is; nan where the lens sees
+        nothing. None for a pin-hole.
+    to_model : int
+        `lens_models.LensModel.number` of the other lens; -1 for a pin-hole.
+    to_coefficients : (MOST_COEFFICIENTS,) float64
+    to_limit_rad : float
+        Of its model.
+    same : bool
+        Whether both are one lens.
+    """
+
+    from_rays: NDArray[np.float64] | None
+    to_model: int
+    to_coefficients: NDArray[np.float64]
+    to_limit_rad: float
+    same: bool
+
 
 MOTION_OUTPUTS: Mapping[str, tuple[Any, tuple[int, ...]]] = {
     "flow": (np.float32, (2,)),
@@ -68,6 +100,7 @@ def move_points(
     tolerance: float,
     outputs: Mapping[str, NDArray[Any]],
     *,
+    bent: BentLenses | None = None,
     duration_s: float = 1.0,
     threads: int,
 ) -> None:
@@ -106,6 +139,8 @@ def move_points(
             Where it is not within the other picture.
         ``hidden`` (H, W) bool
             Where the other picture does not show it, for whatever reason.
+    bent : BentLenses or None
+        Where a lens is no pin-hole. Its picture's depths are distances along the rays.
     duration_s : float
         From the one picture to the other [s], negative if that is the earlier one; 1 gives flow
         in pixels.
@@ -130,6 +165,10 @@ def move_points(
         to_height, to_width = to_depth.shape
     if to_instance is not None:
         checked("to_instance", to_instance, np.uint16, (to_height, to_width))
+    if bent is not None:
+        checked("to_coefficients", bent.to_coefficients, np.float64, (MOST_COEFFICIENTS,))
+        if bent.from_rays is not None:
+            checked("from_rays", bent.from_rays, np.float64, (*depth.shape, 3))
     for name, array in outputs.items():
         dtype, channels = MOTION_OUTPUTS[name]
         checked(name, array, dtype, (*depth.shape, *channels))
@@ -140,6 +179,12 @@ def move_points(
         displacements=displacements,
         from_lens=from_lens,
         to_lens=to_lens,
+        bent=bent is not None,
+        from_rays=None if bent is None else bent.from_rays,
+        to_model=-1 if bent is None else bent.to_model,
+        to_coefficients=None if bent is None else bent.to_coefficients,
+        to_limit=0.0 if bent is None else bent.to_limit_rad,
+        same_lens=bent is not None and bent.same,
         to_height=to_height,
         to_width=to_width,
         to_depth=to_depth,
@@ -157,6 +202,7 @@ def transform_points(
     transforms: NDArray[np.float64],
     lens: NDArray[np.void],
     *,
+    rays: NDArray[np.float64] | None = None,
     threads: int,
 ) -> NDArray[np.float32]:
     """Return each pixel's surface point in other axes.
@@ -168,6 +214,8 @@ def transform_points(
     transforms : (R, 3, 4) float64
         Other axes from the camera's optical frame, for each instance.
     lens : (1,) lens.LENS
+    rays : (H, W, 3) float64 or None
+        As `BentLenses.from_rays`.
     threads : int
 
     Returns
@@ -183,12 +231,15 @@ def transform_points(
     pixels = _checked_pixels(depth, instance, row_of_instance, len(transforms))
     checked("transforms", transforms, np.float64, (None, 3, 4))
     checked("lens", lens, LENS, (1,))
+    if rays is not None:
+        checked("rays", rays, np.float64, (*depth.shape, 3))
     points = np.empty((*depth.shape, 3), np.float32)
     _TRANSFORM(
         threads,
         **pixels,
         transforms=transforms,
         lens=lens,
+        rays=rays,
         points=points,
     )
     return points

@@ -27,7 +27,7 @@ __all__ = [
 _AMBIENT = RecordKernel(
     "ambient_visibility",
     ("integer", "height width"),
-    ("array", "surface baked pattern lens"),
+    ("array", "surface baked pattern lens rays"),
     ("number", "radius_m least_reach_px reach_px bias scale same_surface"),
     ("integer", "step"),
     ("array", "inverse visibility"),
@@ -76,6 +76,7 @@ def find_ambient_visibility(
     settings: AmbientSettings,
     pattern: NDArray[np.float32],
     *,
+    rays: NDArray[np.float32] | None = None,
     threads: int,
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Compute the share of the light from around that arrives, at half resolution.
@@ -90,6 +91,9 @@ def find_ambient_visibility(
     settings : AmbientSettings
     pattern : (16, 2, 12) float32
         For each place in a block, points in the unit disc.
+    rays : (h, w, 3) float32 or None
+        Rays of the pixels of even row and column, of any length, along which the surface tells
+        distances; None through a pin-hole.
     threads : int
 
     Returns
@@ -112,6 +116,8 @@ def find_ambient_visibility(
     checked("lens", lens, LENS, (1,))
     checked("pattern", pattern, np.float32, (16, 2, 12))
     shape = (height + 1) // 2, (width + 1) // 2
+    if rays is not None:
+        checked("rays", rays, np.float32, (*shape, 3))
     inverse, visibility = np.empty(shape, np.float32), np.empty(shape, np.uint8)
     _AMBIENT(
         threads,
@@ -121,6 +127,7 @@ def find_ambient_visibility(
         baked=baked,
         pattern=pattern,
         lens=lens,
+        rays=rays,
         **settings._asdict(),
         inverse=inverse,
         visibility=visibility,

@@ -117,6 +117,7 @@ VIEW = structure(
     ("camera_from_world world_from_camera", "<f8", 16),
     ("lens", LENS),
     ("width height smooth_edges", "<i8"),
+    ("table_at fine_table_at", ADDRESS),
 )
 
 MOST_ATTRIBUTES = 8

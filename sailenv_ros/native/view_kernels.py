@@ -21,9 +21,14 @@ __all__ = ["annotate_pixels", "convert_views", "measure_instances"]
 _ANNOTATE = RecordKernel(
     "annotate",
     ("integer", "height width"),
-    ("array", "surface category_of_instance lens depth category instance"),
+    ("array", "surface category_of_instance lens along depth range category instance"),
 )
-_OUTPUTS: dict[str, Any] = {"depth": np.float32, "category": np.uint8, "instance": np.uint16}
+_OUTPUTS: dict[str, Any] = {
+    "depth": np.float32,
+    "range": np.float32,
+    "category": np.uint8,
+    "instance": np.uint16,
+}
 _MEASURE = Kernel("measure_instances", "iiaaaaaaa")
 _IDS = 65536
 _CLIENT = Kernel("client_views", "iiaannaaaiaa")
@@ -35,6 +40,7 @@ def annotate_pixels(
     lens: NDArray[np.void],
     views: Mapping[str, NDArray[Any]],
     *,
+    along: NDArray[np.float32] | None = None,
     threads: int,
 ) -> None:
     """Fill in the views.
@@ -49,7 +55,10 @@ def annotate_pixels(
         Beyond its far plane nothing is seen; the depth of what is nearer than near is nan.
     views : mapping of str to array
         What to fill in: ``depth`` (H, W) float32, and any of ``category`` uint8 and ``instance``
-        uint16.
+        uint16; with `along` also ``range`` float32, the distance along the ray.
+    along : (H, W) float32 or None
+        z of each pixel's unit ray, nan where there is none: the surface holds distances along the
+        rays then, and the clip distances are along them.
     threads : int
 
     Raises
@@ -65,6 +74,8 @@ def annotate_pixels(
     checked("lens", lens, LENS, (1,))
     for name, array in views.items():
         checked(name, array, _OUTPUTS[name], (height, width))
+    if along is not None:
+        checked("along", along, np.float32, (height, width))
     _ANNOTATE(
         threads,
         height=height,
@@ -72,7 +83,9 @@ def annotate_pixels(
         surface=surface,
         category_of_instance=category_of_instance,
         lens=lens,
+        along=along,
         depth=views["depth"],
+        range=views.get("range"),
         category=views.get("category"),
         instance=views.get("instance"),
     )

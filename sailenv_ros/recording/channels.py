@@ -82,7 +82,7 @@ _LITTLE_ENDIAN_CDR = b"\x00\x01"
 _NEWER_FIELD = "string lesson"
 """The newest field of `FrameInfo`; version 0.2.0 lacked it and the field before it."""
 
-_NEWER_PART_OF_SCENES = "float64 cx_offset_px"
+_NEWER_PART_OF_SCENES = "string distortion_model"
 """The newest field within the parts of `SceneInfo`; version 0.2.0 lacked it."""
 
 _LONGEST_APPENDIX = 64

@@ -12,10 +12,17 @@ from typing import Any, Literal, Protocol, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.camera import Camera
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 
-__all__ = ["BACKEND_NAMES", "BackendName", "RenderBackend", "RenderedViews"]
+__all__ = [
+    "BACKEND_NAMES",
+    "BackendName",
+    "RenderBackend",
+    "RenderedViews",
+    "require_drawable",
+]
 
 BackendName: TypeAlias = Literal["auto", "native", "gl"]
 
@@ -32,7 +39,8 @@ class RenderedViews:
     views : mapping of str to array
         The wanted views as `frame.VIEWS` says; fresh arrays, the caller's own.
     depth : (H, W) float32 or None
-        The depth view, wanted or not, if it was made on the way: the next frame's past.
+        The depth view, wanted or not, if it was made on the way: the next frame's past. Through a
+        lens other than a pin-hole the view ``range``.
     timings_s : mapping of str to float
         Wall time of each stage [s].
     """
@@ -40,6 +48,18 @@ class RenderedViews:
     views: Mapping[str, NDArray[Any]]
     depth: NDArray[np.float32] | None
     timings_s: Mapping[str, float] = field(default_factory=dict)
+
+
+def require_drawable(intrinsics: CameraIntrinsics) -> None:
+    """Refuse a lens that no renderer draws through.
+
+    Raises
+    ------
+    InvalidRequest
+    """
+    if not intrinsics.is_pinhole and intrinsics.law.model.parallel:
+        accepted = "a model whose rays meet in one point, since renderers draw through no other"
+        raise InvalidRequest("distortion_model", intrinsics.distortion_model, accepted)
 
 
 class RenderBackend(Protocol):
@@ -79,7 +99,8 @@ class RenderBackend(Protocol):
         Raises
         ------
         UnknownName, InvalidRequest
-            If there is no such view, or none that this renderer can make.
+            If there is no such view, or none that this renderer can make, or none through this
+            lens.
         """
 
     def close(self) -> None:

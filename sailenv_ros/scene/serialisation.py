@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.scene.fields import SceneModel
-from sailenv_ros.scene.spec_cameras import AgentSpecModel, intrinsics_key
+from sailenv_ros.scene.spec_cameras import AgentSpecModel
+from sailenv_ros.scene.spec_lens import intrinsics_key
 from sailenv_ros.scene.spec_surroundings import (
     AreaLightSpec,
     DirectionalLightSpec,
@@ -117,7 +118,7 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
         Where it stands; None for one that starts at its mover.
     """
     values = {
-        **{intrinsics_key(name): value for name, value in spec.intrinsics.numbers().items()},
+        **{intrinsics_key(name): value for name, value in spec.intrinsics.arguments().items()},
         "depth_range": spec.depth_range_m,
         "rate": spec.rate_hz,
         "views": spec.views,

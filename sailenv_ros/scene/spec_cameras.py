@@ -9,37 +9,25 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, optional
 from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.placing import Aimed, Turned
-from sailenv_ros.scene.rules import (
-    below,
-    distinct_values,
-    few_samples,
-    turned_where_placed,
-    within_half,
-)
+from sailenv_ros.scene.rules import below, distinct_values, turned_where_placed
 from sailenv_ros.scene.spec_body import BodySpec, forces_or_waypoints
+from sailenv_ros.scene.spec_lens import LensSpec
 from sailenv_ros.scene.spec_look_at import LookAtSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.types.agents import RATE, AgentSpec
-from sailenv_ros.types.camera import INTRINSICS_LIMITS, MAX_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 
-__all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec", "intrinsics_key"]
+__all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
 
-_Size: TypeAlias = Annotated[int, Number.within(INTRINSICS_LIMITS["width"])]
 _Clip: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["near_m"])]
-_Offset: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["cx_offset_px"])]
 _ViewName: TypeAlias = Annotated[str, Choice(RENDERED_VIEWS)]
 
 Controller = Literal["waypoint", "rigidbody"]
 
 _DEFAULTS = CameraIntrinsics()
 _START = (0.0, 0.0, 1.0)
-
-
-def intrinsics_key(name: str) -> str:
-    """Return the key of an attribute of `CameraIntrinsics` in a scene file: without its unit."""
-    return name.removesuffix("_deg").removesuffix("_px").removesuffix("_m")
 
 
 class WaypointSpec(Aimed):
@@ -93,18 +81,16 @@ class MoverSpec(Aimed):
         return self.pose_at(_START if self.position is None else self.position)
 
 
-class AgentSpecModel(Turned):
+class AgentSpecModel(LensSpec, Turned):
     """A camera that the scene brings along."""
 
     rules: ClassVar[tuple[Rule, ...]] = (
+        *LensSpec.rules,
         *Turned.rules,
         turned_where_placed,
         below("near", "far", {"near": _DEFAULTS.near_m, "far": _DEFAULTS.far_m}),
         below("near", "depth_range", {"near": _DEFAULTS.near_m, "depth_range": 10.0}),
         distinct_values("views"),
-        few_samples(MAX_SIZE_PX, {"width": _DEFAULTS.width, "height": _DEFAULTS.height}),
-        within_half("cx_offset", "width", _DEFAULTS.width),
-        within_half("cy_offset", "height", _DEFAULTS.height),
     )
 
     name: Annotated[
@@ -114,21 +100,8 @@ class AgentSpecModel(Turned):
             "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
         ),
     ] = Field(description="unique among the agents; a part of its topics' names")
-    width: _Size = Field(default=_DEFAULTS.width, description="of its pictures [px]")
-    height: _Size = Field(default=_DEFAULTS.height, description="of its pictures [px]")
-    vertical_fov: Annotated[float, Number.within(INTRINSICS_LIMITS["vertical_fov_deg"])] = Field(
-        default=_DEFAULTS.vertical_fov_deg, description="full vertical angle of view [deg]"
-    )
     near: _Clip = Field(default=_DEFAULTS.near_m, description="nearest depth that is seen [m]")
     far: _Clip = Field(default=_DEFAULTS.far_m, description="farthest depth that is seen [m]")
-    cx_offset: _Offset = Field(
-        default=_DEFAULTS.cx_offset_px,
-        description="from the picture's centre to the optical axis, to the right [px]",
-    )
-    cy_offset: _Offset = Field(
-        default=_DEFAULTS.cy_offset_px,
-        description="from the picture's centre to the optical axis, down [px]",
-    )
     depth_range: _Clip = Field(
         default=10.0, description="depth that the 8-bit depth picture shows as black [m]"
     )
@@ -152,9 +125,7 @@ class AgentSpecModel(Turned):
         """Return the data type that the simulation takes."""
         return AgentSpec(
             name=self.name,
-            intrinsics=CameraIntrinsics(
-                **{name: getattr(self, intrinsics_key(name)) for name in INTRINSICS_LIMITS}
-            ),
+            intrinsics=self.lens(near_m=self.near, far_m=self.far),
             depth_range_m=self.depth_range,
             rate_hz=self.rate,
             views=self.views,

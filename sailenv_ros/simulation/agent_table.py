@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 from sailenv_ros.errors import InvalidState, NameTaken, UnknownName
+from sailenv_ros.render.contract import require_drawable
 from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.types.agents import MAX_AGENTS, AgentPose, AgentSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -136,8 +137,10 @@ class AgentTable:
         Raises
         ------
         NameTaken, UnknownName, InvalidRequest
-            If the name is in use, the mover or what it faces unknown, or there are too many agents.
+            If the name is in use, the mover or what it faces unknown, or there are too many agents,
+            or no renderer draws through its lens.
         """
+        require_drawable(spec.intrinsics)
         if spec.name in self._records:
             raise NameTaken("agent", spec.name)
         if len(self._records) >= MAX_AGENTS:
@@ -244,8 +247,9 @@ class AgentTable:
         ------
         InvalidRequest
             If its depth picture would then end before the near plane, or its picture be too large
-            for its supersampling.
+            for its supersampling; or if no renderer draws through it.
         """
+        require_drawable(intrinsics)
         record = self[name]
         if intrinsics == record.spec.intrinsics:
             return

@@ -159,7 +159,8 @@ class Observation:
     snapshot : WorldSnapshot
     camera : Camera
     depth : (H, W) float32 or None
-        The depth view of then; needed for the occlusion view alone.
+        The depth view of then, or ``range`` through a lens other than a pin-hole; needed for the
+        occlusion view alone.
     """
 
     snapshot: WorldSnapshot

@@ -100,7 +100,7 @@ def standing_point(frame: Frame, u: int, v: int) -> tuple[float, float, float]:
 
 
 def _optical(frame: Frame, u: int, v: int, depth: float) -> Vector:
-    return depth * frame.camera.intrinsics.rays_through((u, v))
+    return frame.camera.intrinsics.points_at((u, v), depth)
 
 
 def _normal(frame: Frame, u: int, v: int) -> Vector:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import WorldSnapshot
+from tests.support.ray_cast import rays_of
 
 
 class RayCast:
@@ -48,12 +49,16 @@ class RayCast:
         ids : (H, W) int64
             Instance ids, 0 where nothing is.
         depth : (H, W) float64
-            Along the optical axis [m], computed from the triangle met, in double precision.
+            Along the optical axis [m], computed from the triangle met, in double precision; along
+            the ray through a lens that is no pin-hole.
         masked : (H, W) bool
             Where a surface with holes was met, through which the ray may have had to go.
         """
         intrinsics = camera.intrinsics
-        directions = intrinsics.rays().reshape(-1, 3) @ camera.world_from_camera[:3, :3].T
+        rays = rays_of(camera).reshape(-1, 3)
+        # What sees nothing looks ahead.
+        rays = np.where(np.isnan(rays), [0.0, 0.0, 1.0], rays)
+        directions = rays @ camera.world_from_camera[:3, :3].T
         eye = camera.world_from_camera[:3, 3]
         # Which side of a triangle is seen is a matter of where the eye is, not of the ray.
         away = np.einsum("ni,ni->n", self._corners[:, 0] - eye, self._normals) >= 0.0

@@ -49,9 +49,18 @@ class Hits:
         return same
 
 
+def rays_of(camera: Camera) -> NDArray[np.float64]:
+    """(H, W, 3) rays of depth 1; of length 1 through a lens that is no pin-hole."""
+    lens = camera.intrinsics
+    return lens.rays() if lens.is_pinhole else lens.unit_rays()
+
+
 def cast(snapshot: WorldSnapshot, camera: Camera) -> Hits:
-    """Cast the ray of every pixel against every front-facing triangle."""
-    rays = camera.intrinsics.rays().reshape(-1, 3)
+    """Cast the ray of every pixel against every front-facing triangle.
+
+    Through a lens that is no pin-hole the result's depth is the distance along the ray.
+    """
+    rays = rays_of(camera).reshape(-1, 3)
     best = np.full(len(rays), np.inf)
     row = np.full(len(rays), -1)
     number = np.full(len(rays), -1)
@@ -102,7 +111,7 @@ def flow_by_arithmetic(
     and from there into the earlier picture. What hits nothing is a direction.
     """
     dt_s = (now.sim_time_ns - past.sim_time_ns) * 1e-9
-    rays = camera.intrinsics.rays()
+    rays = rays_of(camera)
     here = camera.intrinsics.project(rays)
     result = np.full((*hits.row.shape, 2), np.nan)
     nothing = hits.row < 0

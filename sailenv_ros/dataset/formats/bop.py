@@ -85,6 +85,7 @@ class BopExport(DatasetFormat):
             )
             infos.append(_truth_info(frame, found.masks, instance_id, seen))
         lens = frame.camera.intrinsics
+        lens.require_pinhole("files of BOP")
         to_world = frame.camera.camera_from_world
         camera = {
             "cam_K": lens.K.reshape(-1).tolist(),

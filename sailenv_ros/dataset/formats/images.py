@@ -23,8 +23,12 @@ def frame_record(number: int, frame: Frame) -> dict[str, Any]:
     """Return what belongs to a frame beside its views, for a table of frames.
 
     ``randomised`` is the record of what was drawn at random for it, which makes it again; it is
-    missing where nothing was.
+    missing where nothing was. So are the model of the lens and its coefficients D of a pin-hole.
     """
+    lens = frame.camera.intrinsics
+    distortion: dict[str, Any] = {}
+    if not lens.is_pinhole:
+        distortion = {"distortion_model": lens.distortion_model, "D": lens.D.tolist()}
     return {
         **({} if frame.randomised is None else {"randomised": dict(frame.randomised)}),
         "number": number,
@@ -32,7 +36,8 @@ def frame_record(number: int, frame: Frame) -> dict[str, Any]:
         "stamp_ns": frame.stamp_ns,
         "dt_ns": frame.dt_ns,
         "scene": frame.scene,
-        "K": frame.camera.intrinsics.K.tolist(),
+        "K": lens.K.tolist(),
+        **distortion,
         "world_from_camera": frame.camera.world_from_camera.tolist(),
     }
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 from zipfile import BadZipFile
@@ -22,7 +23,7 @@ from sailenv_ros.types.camera import INTRINSICS_LIMITS, Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.instance_states import InstanceStates
 
-__all__ = ["MoviExport", "load_movi_frame"]
+__all__ = ["MoviExport", "lens_arrays", "lens_of", "load_movi_frame"]
 
 _NAMES = {
     "rgb": "video",
@@ -78,6 +79,31 @@ class MoviExport(DatasetFormat):
         return WriteResult(written={"frames": 1, "flow fields": fields})
 
 
+def lens_arrays(lens: CameraIntrinsics) -> dict[str, Any]:
+    """Return its numbers in the order of `INTRINSICS_LIMITS`, and its model if it has one."""
+    if lens.is_pinhole and not lens.fx_px:
+        return {"lens": np.array([*lens.numbers().values()], np.float64)}
+    return {
+        "lens": np.array([getattr(lens, name) for name in INTRINSICS_LIMITS], np.float64),
+        "distortion_model": np.str_(lens.distortion_model),
+        "distortion": lens.D,
+    }
+
+
+def lens_of(arrays: Mapping[str, NDArray[Any]]) -> CameraIntrinsics:
+    """Return the lens that `lens_arrays` told of."""
+    lens: dict[str, Any] = {
+        name: int(number) if limits.whole else number
+        for (name, limits), number in zip(
+            INTRINSICS_LIMITS.items(), arrays["lens"].tolist(), strict=False
+        )
+    }
+    if "distortion_model" in arrays:
+        lens["distortion_model"] = str(arrays["distortion_model"])
+        lens["distortion"] = tuple(arrays["distortion"].tolist())
+    return CameraIntrinsics(**lens)
+
+
 def load_movi_frame(path: str | Path) -> Frame:
     """Read a file of the format ``movi`` as a frame.
 
@@ -91,12 +117,6 @@ def load_movi_frame(path: str | Path) -> Frame:
     try:
         with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as stored:
             arrays = dict(stored)
-        lens = {
-            name: int(number) if limits.whole else number
-            for (name, limits), number in zip(
-                INTRINSICS_LIMITS.items(), arrays["lens"].tolist(), strict=False
-            )
-        }
         position, quat = arrays["camera_position"], arrays["camera_quaternion"]
         w, x, y, z = (float(value) for value in quat)
         return Frame(
@@ -108,7 +128,7 @@ def load_movi_frame(path: str | Path) -> Frame:
             stamp_ns=int(arrays["stamp_ns"]),
             dt_ns=int(arrays["dt_ns"]),
             camera=Camera(
-                intrinsics=CameraIntrinsics(**lens),
+                intrinsics=lens_of(arrays),
                 pose=Pose(tuple(position.tolist()), (x, y, z, w)),
             ),
             views={view: arrays[name] for view, name in _NAMES.items() if name in arrays},
@@ -150,7 +170,7 @@ def _of_camera(frame: Frame) -> dict[str, Any]:
         "world_from_camera": frame.camera.world_from_camera,
         "camera_position": np.array(frame.camera.pose.position_m),
         "camera_quaternion": np.array([w, x, y, z]),
-        "lens": np.array([*lens.numbers().values()], np.float64),
+        **lens_arrays(lens),
         "stamp_ns": np.int64(frame.stamp_ns),
         "dt_ns": np.int64(frame.dt_ns),
         "epoch": np.int64(frame.epoch),

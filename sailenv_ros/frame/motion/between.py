@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.frame.lens_rays import bent_lenses
 from sailenv_ros.frame.motion.frame_state import AnyFrame, frame_state_of, require_common_past
 from sailenv_ros.frame.motion.rigid_motion import OCCLUSION_TOLERANCE, motion_table
 from sailenv_ros.native.library import thread_count
@@ -69,7 +70,7 @@ def motion(begin: AnyFrame, end: AnyFrame) -> Motion:
     begin, end : Frame or dict
         Of one epoch of one scene, in any order of time, of the same camera or of two; live or
         recorded, also as `Agent.get_frame` gives them. Both need the views ``depth`` and
-        ``instance``.
+        ``instance``; through a lens that sees to the side ``range``, too.
 
     Returns
     -------
@@ -110,6 +111,7 @@ def motion(begin: AnyFrame, end: AnyFrame) -> Motion:
         to_instance,
         OCCLUSION_TOLERANCE,
         found,
+        bent=bent_lenses(first.camera.intrinsics, last.camera.intrinsics),
         threads=thread_count(),
     )
     return Motion(duration_s=(last.stamp_ns - first.stamp_ns) * 1e-9, **found)

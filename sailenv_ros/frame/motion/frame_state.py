@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.data import FrameData
+from sailenv_ros.frame.lens_rays import depth_shares, ranges_of_depths
 from sailenv_ros.frame.motion.rigid_motion import ObservedPoses
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.instance_states import InstanceStates
@@ -45,6 +46,7 @@ class FrameState:
     states: InstanceStates
     depth: NDArray[np.float32] | None
     instance: NDArray[np.uint16] | None
+    range: NDArray[np.float32] | None = None
 
     def observed_poses(self) -> ObservedPoses:
         """Return camera and poses as tables of motion are made of."""
@@ -57,7 +59,7 @@ class FrameState:
         )
 
     def surfaces(self, what: str) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
-        """Return depth and instance ids.
+        """Return depth and instance ids; through a lens other than a pin-hole range and ids.
 
         Parameters
         ----------
@@ -67,7 +69,7 @@ class FrameState:
         Raises
         ------
         InvalidRequest
-            If the frame has not both.
+            If the frame has not both, or its lens sees to the side and it has no ``range``.
         """
         if self.depth is None or self.instance is None:
             missing = "without " + " and ".join(
@@ -76,7 +78,13 @@ class FrameState:
                 if view is None
             )
             raise InvalidRequest(what, missing, "a frame with the views depth and instance")
-        return np.ascontiguousarray(self.depth), np.ascontiguousarray(self.instance)
+        lens, reach = self.camera.intrinsics, self.depth
+        if not lens.is_pinhole:
+            reach = ranges_of_depths(self.depth, lens) if self.range is None else self.range
+            if self.range is None and (depth_shares(lens) <= 0.0).any():
+                accepted = "a frame with the view range, since its lens sees to the side"
+                raise InvalidRequest(what, "without range", accepted)
+        return np.ascontiguousarray(reach), np.ascontiguousarray(self.instance)
 
 
 def frame_state_of(frame: AnyFrame, what: str = "frame") -> FrameState:
@@ -102,11 +110,13 @@ def frame_state_of(frame: AnyFrame, what: str = "frame") -> FrameState:
             "states": frame.states,
             "depth": frame.views.get("depth"),
             "instance": frame.views.get("instance"),
+            "range": frame.views.get("range"),
         }
     elif isinstance(frame, Mapping) and {"camera", "states", "epoch"} <= frame.keys():
         names = ("scene", "epoch", "stamp_ns", "camera", "states")
         fields = {name: frame[name] for name in names}
-        fields |= {"depth": frame.get("depth_m"), "instance": frame.get("instance")}
+        views = {"depth": "depth_m", "instance": "instance", "range": "range"}
+        fields |= {name: frame.get(key) for name, key in views.items()}
     else:
         raise InvalidRequest(what, type(frame).__name__, "a FrameData, or a frame of an Agent")
     if fields["states"] is None:

@@ -19,6 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.frame.lens_rays import unit_rays
 from sailenv_ros.native.motion_kernels import transform_points
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import invert
@@ -130,7 +131,7 @@ def object_points(
     Parameters
     ----------
     depth, instance : (H, W) float32, uint16
-        The camera's views.
+        The camera's views; through a lens other than a pin-hole ``range`` instead of ``depth``.
     poses : ObservedPoses
     threads : int
 
@@ -146,5 +147,8 @@ def object_points(
     if count:
         own_from_camera = invert(poses.world_from_instance) @ poses.camera.world_from_camera
         transforms[1:] = own_from_camera[:, :3]
-    lens = poses.camera.intrinsics.lens_record
-    return transform_points(depth, instance, rows, transforms, lens, threads=threads)
+    lens = poses.camera.intrinsics
+    rays = None if lens.is_pinhole else unit_rays(lens)
+    return transform_points(
+        depth, instance, rows, transforms, lens.lens_record, rays=rays, threads=threads
+    )

@@ -171,10 +171,12 @@ def _found(
         if not _within(pixels, moment).all():
             accepted = f"within the picture: -0.5 to {lens.width - 0.5} and {lens.height - 0.5}"
             raise InvalidRequest("pixel", pixels[~_within(pixels, moment)][0], accepted)
-        directions = lens.rays_through(pixels) @ moment.camera.world_from_camera[:3, :3].T
+        rays = lens.rays_through(pixels) if lens.is_pinhole else lens.unit_rays_through(pixels)
+        directions = rays @ moment.camera.world_from_camera[:3, :3].T
         eye = np.broadcast_to(moment.camera.world_from_camera[:3, 3], directions.shape)
         hits = geometry.cast(states, eye, directions)
-        # The third coordinate of a ray is 1, so that its distances are depths.
+        # The third coordinate of a pin-hole's ray is 1, so that its distances are depths, as clip
+        # distances are; through other lenses these are along the ray.
         met = np.flatnonzero((hits.instance > 0) & (hits.distance <= lens.far_m))
         at = states.row_of_id[hits.instance[met]]
         world = eye[met] + directions[met] * hits.distance[met, None]
@@ -204,7 +206,9 @@ def _follow(
     eye = camera.world_from_camera[:3, 3]
     optical = (world - eye) @ camera.world_from_camera[:3, :3]
     pixels = camera.intrinsics.project(optical)
-    seen = _within(pixels, moment) & (optical[:, 2] <= camera.intrinsics.far_m)
+    is_pinhole = camera.intrinsics.is_pinhole
+    reach = optical[:, 2] if is_pinhole else np.linalg.norm(optical, axis=-1)
+    seen = _within(pixels, moment) & (reach <= camera.intrinsics.far_m)
     tracks.positions[chosen, number] = world
     tracks.pixels[chosen, number] = pixels
     tracks.in_view[chosen, number] = seen

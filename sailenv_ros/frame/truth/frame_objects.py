@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.frame.data import FrameData
+from sailenv_ros.frame.lens_rays import reach_of
 from sailenv_ros.frame.truth.object_table import (
     CORNER_SIGNS,
     Keypoints,
@@ -78,7 +79,7 @@ def objects_of(frame: FrameData) -> ObjectTable:
         box_sizes=known.high_m - known.low_m,
         corners=_moved(world, own),
         corner_pixels=projected,
-        corners_visible=_is_visible(frame, optical[..., 2], projected),
+        corners_visible=_is_visible(frame, optical, projected),
         distances=np.linalg.norm(centres, axis=1),
         linear_velocities=linear,
         angular_velocities=angular,
@@ -113,7 +114,7 @@ def keypoints_of(frame: FrameData, table: ObjectTable, instance_id: int) -> Keyp
         names=tuple(point.name for point in points),
         world=_moved(table.world_from_object[row : row + 1], own)[0],
         pixels=pixels[0],
-        visible=_is_visible(frame, optical[..., 2], pixels)[0],
+        visible=_is_visible(frame, optical, pixels)[0],
     )
 
 
@@ -155,17 +156,19 @@ def _moved(transforms: NDArray[np.float64], points: NDArray[np.float64]) -> NDAr
 
 
 def _is_visible(
-    frame: FrameData, depths: NDArray[np.float64], pixels: NDArray[np.float64]
+    frame: FrameData, optical: NDArray[np.float64], pixels: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Return which points lie in the picture with nothing before them."""
+    """Return which points of the optical frame lie in the picture with nothing before them."""
     lens: CameraIntrinsics = frame.camera.intrinsics
+    depths = optical[..., 2] if lens.is_pinhole else np.linalg.norm(optical, axis=-1)
     with np.errstate(invalid="ignore"):
         u, v = np.rint(pixels[..., 0]), np.rint(pixels[..., 1])
         inside = (u >= 0) & (u < lens.width) & (v >= 0) & (v < lens.height)
         inside &= (depths >= lens.near_m) & (depths <= lens.far_m)
-    if "depth" not in frame.views:
+    view = reach_of(frame.views, lens)
+    if view is None:
         return np.zeros(depths.shape, bool)
     columns, rows = np.where(inside, u, 0).astype(np.intp), np.where(inside, v, 0).astype(np.intp)
     with np.errstate(invalid="ignore"):
-        open_to_view = frame["depth"][rows, columns] >= depths * (1.0 - HIDDEN_BEHIND)
+        open_to_view = view[rows, columns] >= depths * (1.0 - HIDDEN_BEHIND)
     return inside & open_to_view

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame.lens_rays import reach_of, unit_rays
 from sailenv_ros.frame.truth.ply import ply_bytes
 from sailenv_ros.system.files import storage_errors, write_file
 
@@ -73,11 +74,16 @@ def points_of(frame: FrameData, *, in_world: bool = True) -> PointCloud:
 
     See `Frame.points`.
     """
-    lens, depth = frame.camera.intrinsics, frame["depth"].reshape(-1)
-    pixels = np.flatnonzero(np.isfinite(depth))
-    z = depth[pixels].astype(np.float64)
+    lens = frame.camera.intrinsics
+    found = frame["depth"] if lens.is_pinhole else reach_of(frame.views, lens)
+    reach = np.asarray(found, np.float32).reshape(-1)
+    pixels = np.flatnonzero(np.isfinite(reach))
     rows, columns = np.divmod(pixels, lens.width)
-    x, y, _ = np.moveaxis(lens.rays_through(np.stack([columns, rows], axis=-1)), -1, 0) * z
+    if lens.is_pinhole:
+        rays = lens.rays_through(np.stack([columns, rows], axis=-1))
+    else:
+        rays = unit_rays(lens)[rows, columns]
+    x, y, z = np.moveaxis(rays, -1, 0) * reach[pixels].astype(np.float64)
     pose = frame.camera.world_from_camera if in_world else np.eye(4)
     count = len(pixels)
     xyz = np.empty((count, 3), np.float32)

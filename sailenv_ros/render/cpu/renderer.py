@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.native.drawing import Drawing
 from sailenv_ros.native.library import native_library
 from sailenv_ros.native.render_types import PART, VIEW, record
+from sailenv_ros.render.cpu.cube_faces import lens_tables
 from sailenv_ros.render.cpu.frame_light import FrameLight
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
@@ -119,7 +120,7 @@ class NativeRenderer(DrawingRenderer):
         if light is not None and not sampled:
             radiance = arrays["rgb"] = np.empty((height, width, 4), np.float16)
         self._drawing.picture(
-            native_view(camera),
+            native_view(camera, lit=radiance is not None),
             instances,
             table.opaque,
             table.glass,
@@ -182,11 +183,12 @@ class NativeRenderer(DrawingRenderer):
             return surface
 
         def samples(window: Window) -> NDArray[np.float32]:
-            return surface_of(native_view(camera.of_half_pixels(), closer_window(window)))
+            closer = closer_window(window)
+            return surface_of(native_view(camera.of_half_pixels(), closer, lit=False))
 
         surface = arrays["samples" if "samples" in arrays else "surface"]
         if surface.shape[:2] != arrays["rgb"].shape[:2]:
-            surface = surface_of(native_view(camera))
+            surface = surface_of(native_view(camera, lit=False))
         smoothed = camera.picture.smooth_edges
         reflect(mirrors, camera, arrays["rgb"], surface, look, samples if smoothed else None)
 
@@ -217,10 +219,22 @@ class NativeRenderer(DrawingRenderer):
         return radiance[..., :3].astype(np.float32)
 
 
-def native_view(camera: Camera, window: Window | None = None) -> NDArray[np.void]:
-    """Return (1,) VIEW of a camera or of a window of it, as the native kernels read it."""
+def native_view(
+    camera: Camera, window: Window | None = None, *, lit: bool = True
+) -> NDArray[np.void]:
+    """Return (1,) VIEW of a camera or of a window of it, as the native kernels read it.
+
+    Parameters
+    ----------
+    camera : Camera
+    window : Window or None
+        Of a lens that bends straight lines all of the picture alone.
+    lit : bool
+        Whether a picture is drawn: edges are smoothed in pictures alone.
+    """
     lens = camera.intrinsics
     rows, columns = window or (slice(0, lens.height), slice(0, lens.width))
+    smooth = lit and camera.picture.smooth_edges
     return record(
         VIEW,
         camera_from_world=camera.camera_from_world.reshape(-1),
@@ -228,5 +242,6 @@ def native_view(camera: Camera, window: Window | None = None) -> NDArray[np.void
         lens=lens.lens_of_window(rows, columns)[0],
         width=columns.stop - columns.start,
         height=rows.stop - rows.start,
-        smooth_edges=camera.picture.smooth_edges,
+        smooth_edges=smooth,
+        **({} if lens.is_pinhole else lens_tables(lens, smooth)),
     )

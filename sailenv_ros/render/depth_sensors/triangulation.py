@@ -122,14 +122,25 @@ class Triangulation(SceneModel):
             same = np.abs(other - on_plane) <= np.float32(_SAME_SURFACE) * depth
         return np.where(same, depth, other)
 
+    def _shift(self, surfaces: Surfaces) -> Numbers:
+        """Return (H, W): how many columns farther to the left the second view sees a point."""
+        lens, depth = surfaces.lens, surfaces.depth
+        shift: Numbers
+        if lens.is_pinhole:
+            shift = np.float32(lens.fx * self.baseline) / depth
+        else:
+            points = surfaces.rays * depth[..., None] - np.array([self.baseline, 0.0, 0.0])
+            shift = (np.arange(lens.width) - lens.project(points)[..., 0]).astype(np.float32)
+        return shift
+
     def _in_shadow(self, surfaces: Surfaces) -> NDArray[np.bool_]:
         """Tell what the projector or the second camera does not see.
 
         Each pixel's point goes to its column in the second view, where the nearest one counts.
         """
-        depth, lens = surfaces.depth, surfaces.lens
+        depth = surfaces.depth
         height, width = depth.shape
-        shift = np.float32(lens.fx * self.baseline) / depth
+        shift = self._shift(surfaces)
         shift = np.where(np.isfinite(shift), shift, 0)
         at = np.arange(width, dtype=np.float32) - shift
         # Both columns that a point lies between: neighbours of one surface leave no gap.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import time
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 
@@ -15,6 +16,8 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.render.contract import RenderedViews
+from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.context import create_context
 from sailenv_ros.render.gl.draw_list import DrawList
 from sailenv_ros.render.gl.edge_pass import EdgePass
@@ -73,6 +76,7 @@ class Renderer(DrawingRenderer):
             raise
         self._outputs = written_views()
         self._draws: DrawList | None = None
+        self._native: NativeRenderer | None = None
 
     @property
     def description(self) -> str:
@@ -92,6 +96,20 @@ class Renderer(DrawingRenderer):
         made = {*views_of("lighting", "annotation", "measurement"), *self._outputs}
         return tuple(view for view in VIEWS if view in made)
 
+    def render(
+        self,
+        snapshot: WorldSnapshot,
+        previous: Observation | None,
+        camera: Camera,
+        views: Iterable[str],
+    ) -> RenderedViews:
+        """Make the wanted views; through lenses that bend straight lines by the native renderer."""
+        if camera.intrinsics.is_pinhole or self._closed:
+            return super().render(snapshot, previous, camera, views)
+        if self._native is None:
+            self._native = NativeRenderer(threads=self._threads)
+        return self._native.render(snapshot, previous, camera, views)
+
     def _drawing_context(self) -> moderngl.Context:
         return self._context
 
@@ -99,6 +117,8 @@ class Renderer(DrawingRenderer):
         return self._draws_of(snapshot).at_baked_pose(snapshot)
 
     def _release(self) -> None:
+        if self._native is not None:
+            self._native.close()
         with self._context:
             for resource in (
                 self._pictures,

@@ -12,9 +12,12 @@ removes what is left of it.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.frame.lens_rays import unit_rays
 from sailenv_ros.native.picture_kernels import AmbientSettings, find_ambient_visibility
 from sailenv_ros.types.camera import CameraIntrinsics
 
@@ -36,6 +39,9 @@ GAIN = 16.0
 
 SAME_SURFACE = 0.03
 """Share of its depth by which a sample may lie off another's surface and count as on it."""
+
+LEAST_FORWARD = 0.3
+"""Cosine from the axis down to which rays lead forwards."""
 
 STEP_PER_PX, MOST_STEP = 86.0, 4
 """The second average goes over four samples that are this share of the focal length apart, and at
@@ -90,9 +96,19 @@ def ambient_visibility(
         nothing was hit.
     """
     settings = kernel_settings(intrinsics, strength, radius_m)
+    rays = None if intrinsics.is_pinhole else _halved_rays(intrinsics)
     return find_ambient_visibility(
-        surface, baked, intrinsics.lens_record, settings, PATTERN, threads=threads
+        surface, baked, intrinsics.lens_record, settings, PATTERN, rays=rays, threads=threads
     )
+
+
+@lru_cache(maxsize=8)
+def _halved_rays(intrinsics: CameraIntrinsics) -> NDArray[np.float32]:
+    rays = unit_rays(intrinsics)[::2, ::2]
+    # Of depth 1 where they all lead forwards, as a pin-hole's, else of length 1.
+    if np.nanmin(rays[..., 2], initial=1.0) > LEAST_FORWARD:
+        rays = rays / rays[..., 2:]
+    return np.ascontiguousarray(rays, np.float32)
 
 
 def kernel_settings(

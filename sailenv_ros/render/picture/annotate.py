@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.frame.lens_rays import bent_lenses, depth_shares, reach_view
 from sailenv_ros.frame.motion.rigid_motion import (
     OCCLUSION_TOLERANCE,
     ObservedPoses,
@@ -49,7 +50,8 @@ def annotate(
     Parameters
     ----------
     surface : (H, W, 2) float32
-        Depth along the optical axis [m], ``inf`` where nothing was hit, and the instance id.
+        Depth along the optical axis [m], ``inf`` where nothing was hit, and the instance id;
+        through a lens other than a pin-hole the distance along the ray.
     snapshot, previous, camera
         As `RenderBackend.render` takes them. `previous.depth` must be there for ``occlusion``.
     views : frozenset of str
@@ -67,17 +69,28 @@ def annotate(
     # Ids of more than eight bits are looked up afterwards, by the instance.
     wide = "category" in wanted and snapshot.contents.categories.dtype != VIEWS["category"].dtype
     arrays: dict[str, NDArray[Any]] = {}
+    lens = camera.intrinsics
     for name in wanted - {"object_coords"} - ({"category"} if wide else frozenset()):
         arrays[name] = np.empty(VIEWS[name].shape(height, width), VIEWS[name].dtype)
     if wanted - {"depth", "category"} or wide:
         arrays.setdefault("instance", np.empty((height, width), np.uint16))
+    if not lens.is_pinhole:
+        arrays.setdefault("range", np.empty((height, width), np.float32))
+    made = ("depth", "category", "instance", *(() if lens.is_pinhole else ("range",)))
     annotate_pixels(
         np.ascontiguousarray(surface),
         _NO_CATEGORIES if wide else snapshot.contents.category_of_instance,
-        camera.intrinsics.lens_record,
-        {name: arrays[name] for name in ("depth", "category", "instance") if name in arrays},
+        lens.lens_record,
+        {name: arrays[name] for name in made if name in arrays},
+        along=None if lens.is_pinhole else depth_shares(lens),
         threads=threads,
     )
+    if "range" in wanted and lens.is_pinhole:
+        arrays["range"] = (arrays["depth"] * np.linalg.norm(lens.rays(), axis=-1)).astype(
+            np.float32
+        )
+    if "lens_valid" in wanted:
+        arrays["lens_valid"][:] = True if lens.is_pinhole else ~np.isnan(depth_shares(lens))
     now = _poses_of(snapshot, camera)
     moved = {key: arrays[view] for view, key in _MOTION_OUTPUTS.items() if view in arrays}
     if moved:
@@ -86,7 +99,7 @@ def annotate(
         arrays["category"] = snapshot.contents.category_of_instance[arrays["instance"]]
     if "object_coords" in wanted:
         arrays["object_coords"] = object_points(
-            arrays["depth"], arrays["instance"], now, threads=threads
+            arrays[reach_view(lens)], arrays["instance"], now, threads=threads
         )
     return {name: arrays[name] for name in wanted}
 
@@ -100,8 +113,9 @@ def with_depth(previous: Observation, surface: NDArray[np.float32]) -> Observati
     surface : (H, W, 2) float32
         As `annotate` takes it, drawn anew from the poses of then.
     """
-    truth = annotate(surface, previous.snapshot, None, previous.camera, frozenset())
-    return replace(previous, depth=truth["depth"])
+    reach = reach_view(previous.camera.intrinsics)
+    truth = annotate(surface, previous.snapshot, None, previous.camera, frozenset({reach}))
+    return replace(previous, depth=truth[reach])
 
 
 def _poses_of(snapshot: WorldSnapshot, camera: Camera) -> ObservedPoses:
@@ -136,7 +150,7 @@ def _add_motion(
     duration_s = (previous.snapshot.sim_time_ns - snapshot.sim_time_ns) * 1e-9
     depth = previous.depth if "hidden" in moved else None
     move_points(
-        arrays["depth"],
+        arrays[reach_view(lens)],
         arrays["instance"],
         table.row_of_instance,
         table.motions,
@@ -147,6 +161,7 @@ def _add_motion(
         None,
         OCCLUSION_TOLERANCE,
         moved,
+        bent=bent_lenses(lens, previous.camera.intrinsics),
         duration_s=duration_s if duration_s < 0.0 else -1.0,
         threads=threads,
     )

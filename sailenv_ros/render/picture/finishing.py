@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import RenderError
+from sailenv_ros.frame.lens_rays import reach_view
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.render.contract import RenderedViews
+from sailenv_ros.render.contract import RenderedViews, require_drawable
 from sailenv_ros.render.picture.annotate import annotate, with_depth
 from sailenv_ros.render.picture.measured_depth import MEASURED_FROM, measured_depth
 from sailenv_ros.render.picture.post_pass import PostPass
@@ -65,6 +66,7 @@ class DrawingRenderer(ABC):
         if self._closed:
             raise RenderError("the renderer was closed")
         wanted = frozenset(checked_views(views, supported=self.supported_views))
+        require_drawable(camera.intrinsics)
         drawn = wanted
         if "measured_depth" in wanted:
             drawn |= MEASURED_FROM
@@ -84,10 +86,11 @@ class DrawingRenderer(ABC):
             )
             timings["post"] = time.perf_counter() - began
             began = time.perf_counter()
-        truth = annotate(surface, snapshot, previous, camera, wanted, self._threads)
+        reach = reach_view(camera.intrinsics)
+        truth = annotate(surface, snapshot, previous, camera, wanted | {reach}, self._threads)
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
-        depth: NDArray[np.float32] = truth["depth"]
+        depth: NDArray[np.float32] = truth[reach]
         if "measured_depth" in wanted:
             began = time.perf_counter()
             arrays["measured_depth"] = measured_depth(arrays, snapshot, camera)
@@ -95,7 +98,7 @@ class DrawingRenderer(ABC):
         return RenderedViews(
             views={name: arrays[name] for name in wanted},
             # A caller may write into its own views; the past must stay what it was.
-            depth=depth if "depth" not in wanted else depth.copy() if keeps_depth else None,
+            depth=depth if reach not in wanted else depth.copy() if keeps_depth else None,
             timings_s=timings,
         )
 

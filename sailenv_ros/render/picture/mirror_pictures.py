@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.frame.lens_rays import unit_rays
 from sailenv_ros.render.picture.half_pixels import pixel_shares
 from sailenv_ros.render.scene.flat_mirrors import NEAR_PLANE_M, SeenMirror, Window
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -109,11 +110,12 @@ def _pixels(
 ) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
     """Return which pixels of the window show the mirror, and the cosine of the viewing angle."""
     rows, columns = mirror.window
-    x, y, _ = np.moveaxis(lens.rays(rows, columns), -1, 0)
+    rays = lens.rays(rows, columns) if lens.is_pinhole else unit_rays(lens)[rows, columns]
+    x, y, z = np.moveaxis(rays, -1, 0)
     normal = camera.camera_from_world[:3, :3] @ mirror.normal
     offset = float(mirror.normal @ (mirror.point - camera.world_from_camera[:3, 3]))
-    along = normal[0] * x + normal[1] * y + normal[2]
-    length = np.sqrt(1.0 + x**2 + y**2)
+    along = normal[0] * x + normal[1] * y + normal[2] * z
+    length = np.sqrt(z**2 + x**2 + y**2)
     mask = surface[..., 1] == mirror.instance_id
     depth = np.where(mask, surface[..., 0], 0.0)
     mask &= np.abs(along * depth - offset) < NEAR_PLANE_M

@@ -200,13 +200,18 @@ def _silvered(tint: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _window(camera: Camera, pose: NDArray[np.float64], face: _Face, front: float) -> Window | None:
-    """Return the part of the picture that may show a face; None if it shows too little of it."""
+    """Return the part of the picture that may show a face; None if it shows too little of it.
+
+    Through a lens that bends straight lines all of it.
+    """
     corners = np.array(list(np.ndindex(2, 2, 2)))[::1]
     points = np.where(corners, face.high, face.low)
     points[:, face.axis] = front
     world = points @ pose[:3, :3].T + pose[:3, 3]
     seen = world @ camera.camera_from_world[:3, :3].T + camera.camera_from_world[:3, 3]
     lens = camera.intrinsics
+    if not lens.is_pinhole:
+        return slice(0, lens.height), slice(0, lens.width)
     ahead = seen[:, 2] > lens.near_m
     if not ahead.any():
         return None

@@ -6,12 +6,15 @@ nor drawn beyond the rectangle around them, which changes no pixel.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import product
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.camera import Camera
+from sailenv_ros.frame.lens_rays import unit_rays
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.outside import Outside
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
@@ -19,6 +22,18 @@ __all__ = ["OpeningWindows"]
 
 MARGIN_PX = 2
 NEAREST_M = 1e-3
+
+LENS_MARGIN_PX = 6
+"""The same through a lens that bends the outlines of openings, which are followed in `STEPS`."""
+
+STEPS = 128
+LEAST_AHEAD = 0.37
+"""Least cosine from the axis of what a lens sees that sees ahead alone: up to 68 degrees."""
+
+FARTHEST = 4.0
+"""Coordinates at depth 1 m up to which outlines are followed: further than such a lens sees."""
+
+BEYOND_PX = 1e6
 
 Rectangle = tuple[int, int, int, int]
 
@@ -52,7 +67,8 @@ class OpeningWindows:
             return None
         if not np.array_equal(snapshot.world_from_body[self._shell_rows], self._shell_poses):
             return None
-        return self._row, _around(self._corners, camera)
+        around = _around(self._corners, camera)
+        return None if around is None else (self._row, around)
 
     def _know(self, contents: SceneContents) -> None:
         if self._contents is contents:
@@ -79,26 +95,88 @@ class OpeningWindows:
             self._corners = np.array(openings, np.float64).reshape(-1, 8, 3)
 
 
-def _around(corners: NDArray[np.float64], camera: Camera) -> Rectangle:
-    """Return the rectangle around all openings (N, 8, 3), in pixels; empty if none is seen."""
+def _around(corners: NDArray[np.float64], camera: Camera) -> Rectangle | None:
+    """Return the rectangle around all openings (N, 8, 3), in pixels; empty if none is seen.
+
+    None where a lens may show them anywhere.
+    """
     lens = camera.intrinsics
     turn, shift = camera.camera_from_world[:3, :3], camera.camera_from_world[:3, 3]
+    if not lens.is_pinhole:
+        return _around_through_lens(corners @ turn.T + shift, lens)
     focal, centre = np.array([lens.fx, lens.fy]), np.array([lens.cx, lens.cy])
-    most = np.array([lens.width - 1, lens.height - 1])
-    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    found = []
     for seen in corners @ turn.T + shift:
         points = _before_eye(seen)
-        if not len(points):
-            continue
-        places = points[:, :2] / points[:, 2:] * focal + centre
+        if len(points):
+            found.append(points[:, :2] / points[:, 2:] * focal + centre)
+    return _rectangle(found, lens, MARGIN_PX)
+
+
+def _rectangle(
+    outlines: list[NDArray[np.float64]], lens: CameraIntrinsics, margin: int
+) -> Rectangle:
+    """Return the rectangle around those of some outlines (N, 2) that reach into the picture."""
+    most = np.array([lens.width - 1, lens.height - 1])
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for places in outlines:
         first, last = places.min(axis=0), places.max(axis=0)
-        if (last >= -MARGIN_PX).all() and (first <= most + MARGIN_PX).all():
+        if (last >= -margin).all() and (first <= most + margin).all():
             low, high = np.minimum(low, first), np.maximum(high, last)
     if not np.isfinite(low).all():
         return 1, 1, 0, 0
-    left, top = np.clip(np.floor(low) - MARGIN_PX, 0, most).tolist()
-    right, bottom = np.clip(np.ceil(high) + MARGIN_PX, 0, most).tolist()
+    left, top = np.clip(np.floor(low) - margin, 0, most).tolist()
+    right, bottom = np.clip(np.ceil(high) + margin, 0, most).tolist()
     return int(left), int(top), int(right), int(bottom)
+
+
+@lru_cache(maxsize=8)
+def _sees_ahead_alone(lens: CameraIntrinsics) -> bool:
+    return bool(np.nanmin(unit_rays(lens)[..., 2]) >= LEAST_AHEAD)
+
+
+def _around_through_lens(corners: NDArray[np.float64], lens: CameraIntrinsics) -> Rectangle | None:
+    """Return the rectangle around all openings (N, 8, 3) of the optical frame.
+
+    At depth 1 an opening has a convex outline, whose image ends where the outline's does. What the
+    lens does not see lies far away in its direction from the axis. None for a lens that sees to the
+    side.
+    """
+    if not _sees_ahead_alone(lens):
+        return None
+    found = []
+    for seen in corners:
+        points = _before_eye(seen)
+        if not len(points):
+            continue
+        ahead = (points[:, :2] / points[:, 2:]).astype(np.float32)
+        outline = _within_square(cv2.convexHull(ahead)[:, 0].astype(np.float64), FARTHEST)
+        if not len(outline):
+            continue
+        along = np.linspace(0.0, 1.0, STEPS)[:, None, None]
+        sides = (outline + along * (np.roll(outline, -1, axis=0) - outline)).reshape(-1, 2)
+        places = lens.project(np.column_stack([sides, np.ones(len(sides))]))
+        away = sides / np.maximum(np.linalg.norm(sides, axis=1, keepdims=True), 1e-9)
+        found.append(np.where(np.isnan(places), BEYOND_PX * away, places))
+    return _rectangle(found, lens, LENS_MARGIN_PX)
+
+
+def _within_square(outline: NDArray[np.float64], half: float) -> NDArray[np.float64]:
+    """Return the part of a convex outline (N, 2) in which no coordinate is beyond `half`."""
+    for axis, sign in product((0, 1), (-1.0, 1.0)):
+        inside = half - sign * outline[:, axis]
+        kept = []
+        for number, point in enumerate(outline):
+            before = inside[number - 1]
+            if (before < 0.0) != (inside[number] < 0.0):
+                share = before / (before - inside[number])
+                kept.append(outline[number - 1] + share * (point - outline[number - 1]))
+            if inside[number] >= 0.0:
+                kept.append(point)
+        outline = np.array(kept).reshape(-1, 2)
+        if not len(outline):
+            break
+    return outline
 
 
 def _before_eye(corners: NDArray[np.float64]) -> NDArray[np.float64]:

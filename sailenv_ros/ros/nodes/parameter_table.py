@@ -18,6 +18,7 @@ from sailenv_ros.gateway.protocol_commands import Protocol
 from sailenv_ros.render.contract import BACKEND_NAMES, BackendName
 from sailenv_ros.types.agents import RATE, AgentSpec
 from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
+from sailenv_ros.types.lens_settings import PINHOLE_FOV
 from sailenv_ros.types.light_choice import LIGHTS, LightChoice
 from sailenv_ros.types.scene_info import REAL_TIME_FACTOR, TimeMode
 from sailenv_ros.types.validation import SEED, Bounds
@@ -185,7 +186,7 @@ PARAMETERS: dict[str, Parameter] = {
     "agent.width": Parameter(640, "Width of its pictures [px].", INTRINSICS_LIMITS["width"]),
     "agent.height": Parameter(480, "Height of its pictures [px].", INTRINSICS_LIMITS["height"]),
     "agent.vertical_fov_deg": Parameter(
-        60.0, "Full vertical angle of view [deg].", INTRINSICS_LIMITS["vertical_fov_deg"]
+        60.0, "Full vertical angle of view [deg].", PINHOLE_FOV
     ),
     "agent.cx_offset_px": Parameter(
         0.0, "From the picture's centre to the optical axis, to the right [px].",
@@ -244,7 +245,11 @@ def _agent(values: Mapping[str, Any]) -> AgentSpec | None:
     return AgentSpec(
         name=values["agent.name"],
         intrinsics=CameraIntrinsics(
-            **{name: values[f"agent.{name}"] for name in INTRINSICS_LIMITS}
+            **{
+                name: values[f"agent.{name}"]
+                for name in INTRINSICS_LIMITS
+                if f"agent.{name}" in PARAMETERS
+            }
         ),
         depth_range_m=values["agent.depth_range_m"],
         rate_hz=values["agent.rate_hz"],

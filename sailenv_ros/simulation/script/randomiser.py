@@ -282,7 +282,7 @@ class Randomiser:
             if "position" in keys:
                 agents.put(name, _camera_pose(keys), self._scene.world, teleport=True)
             if "vertical_fov" in keys:
-                lens = replace(spec.intrinsics, vertical_fov_deg=keys["vertical_fov"])
+                lens = spec.intrinsics.with_vertical_fov(keys["vertical_fov"])
                 agents.set_intrinsics(name, lens)
             picture = {key: keys[key] for key in _PICTURE if key in keys}
             if picture:

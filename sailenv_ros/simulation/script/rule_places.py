@@ -6,7 +6,6 @@ A record holds the place, so a frame is made again without the rule.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any
 
 from sailenv_ros.authoring.viewpoints import ViewScene, sample_cameras
@@ -67,4 +66,4 @@ def look_lens(lens: CameraIntrinsics, fov_deg: float | None = None) -> CameraInt
     share = min(1.0, LOOK_PX / max(lens.width, lens.height))
     width, height = (max(16, round(share * size)) for size in (lens.width, lens.height))
     small = lens.resized(width, height)
-    return small if fov_deg is None else replace(small, vertical_fov_deg=fov_deg)
+    return small if fov_deg is None else small.with_vertical_fov(fov_deg)

@@ -171,7 +171,7 @@ def test_a_frame_shows_itself_in_two_lines(frame: Frame) -> None:
     """Not with all of its pixels, nor with all that is known of the scene."""
     assert repr(frame) == (
         "<Frame eye in noise: frame 2, t = 0.033 s, Δt = 0.033 s, 32 × 24 px\n"
-        " views: rgb, depth, category, instance, flow, flow_valid, occlusion, normals, albedo, uv, "
-        "object_coords>"
+        " views: rgb, depth, category, instance, flow, flow_valid, occlusion, range, lens_valid, "
+        "normals, albedo, uv, object_coords>"
     )
     assert repr(dataclasses.replace(frame, views={})).endswith("\n views: none>")

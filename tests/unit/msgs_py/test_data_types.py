@@ -10,6 +10,7 @@ from geometry_msgs.msg import Point, Quaternion
 from geometry_msgs.msg import Pose as PoseMsg
 from hypothesis import given
 from hypothesis import strategies as st
+from sensor_msgs.msg import CameraInfo
 from std_msgs.msg import Header
 
 import sailenv_msgs.msg as msgs
@@ -110,14 +111,48 @@ def test_camera_infos_hold_the_intrinsics(intrinsics: CameraIntrinsics) -> None:
         assert back.cx_offset_px == 0.0
 
 
-def test_a_camera_of_another_kind_is_refused() -> None:
-    """Distortion, oblong pixels and an axis beside the picture are not dropped silently."""
-    for change in ({"d": [0.1, 0.0, 0.0, 0.0, 0.0]}, {"k": [5.0, 0, 0, 0, 6.0, 0, 0, 0, 1]}):
-        msg = camera_info_from_intrinsics(CameraIntrinsics(), Header())
-        for field, value in change.items():
-            setattr(msg, field, value)
-        with pytest.raises(InvalidRequest):
-            intrinsics_from_camera_info(msg)
+@pytest.mark.parametrize(
+    ("model", "coefficients", "told"),
+    [
+        ("plumb_bob", (-0.28, 0.08, 1e-3, -2e-3), [-0.28, 0.08, 1e-3, -2e-3, 0.0]),
+        ("plumb_bob", (-0.28, 0.08, 1e-3, -2e-3, 0.01), None),
+        ("rational_polynomial", (0.6, -0.03, 0.0, 1e-3, 0.001, 0.95, 0.03, -0.004), None),
+        ("equidistant", (0.003, 0.001, -0.002, 0.0002), None),
+        ("mei", (1.04, -0.2, 0.04, 0.0, 0.0), None),
+    ],
+)
+def test_camera_infos_hold_the_distortion(
+    model: str, coefficients: tuple[float, ...], told: list[float] | None
+) -> None:
+    """Under ROS's names, with as many coefficients as `image_geometry` reads; and come back."""
+    lens = CameraIntrinsics(
+        fx_px=700.0, fy_px=650.5, cx_offset_px=4.5, distortion_model=model, distortion=coefficients
+    )
+    msg = camera_info_from_intrinsics(lens, Header())
+    assert msg.distortion_model == model
+    assert [*msg.d] == (told or [*coefficients])
+    assert [*msg.k] == [700.0, 0.0, 324.0, 0.0, 650.5, 239.5, 0.0, 0.0, 1.0]
+    assert [*msg.p] == [700.0, 0.0, 324.0, 0.0, 0.0, 650.5, 239.5, 0.0, 0.0, 0.0, 1.0, 0.0]
+    back = intrinsics_from_camera_info(msg)
+    assert [*back.distortion] == [*msg.d]
+    np.testing.assert_array_equal(back.unit_rays(), lens.unit_rays())
+
+
+def test_a_camera_info_of_others_is_read_or_refused() -> None:
+    """Oblong pixels, a sensor that is not tilted; models, axes and focal lengths that are none."""
+    msg = camera_info_from_intrinsics(CameraIntrinsics(), Header())
+    msg.k[0] = 500.0
+    assert intrinsics_from_camera_info(msg).fx == 500.0
+    msg.distortion_model, msg.d = "rational_polynomial", [0.1, *[0.0] * 13]
+    assert len(intrinsics_from_camera_info(msg).distortion) == 12
+    msg.d = [0.1, *[0.0] * 12, 0.2]
+    with pytest.raises(InvalidRequest, match="distortion must be 8 or 12 finite numbers"):
+        intrinsics_from_camera_info(msg)
+    msg.distortion_model = "thin_prism_fisheye"
+    with pytest.raises(InvalidRequest, match="distortion_model must be one of: pinhole, plumb_bob"):
+        intrinsics_from_camera_info(msg)
+    with pytest.raises(InvalidRequest, match="focal lengths fx, fy must be above 0"):
+        intrinsics_from_camera_info(CameraInfo(width=64, height=48))
     shifted = camera_info_from_intrinsics(CameraIntrinsics(), Header())
     shifted.k[2] += 320.5
     with pytest.raises(InvalidRequest, match="cx_offset_px"):

@@ -165,7 +165,7 @@ PICTURES = st.builds(
         name: st.floats(at.least, at.most) for name, at in LIMITS.items() if name != "supersampling"
     },
 )
-INTRINSICS = st.builds(
+PINHOLES = st.builds(
     CameraIntrinsics,
     # At four samples across and down, no side has more than 4096.
     width=st.integers(8, 1024),
@@ -176,6 +176,15 @@ INTRINSICS = st.builds(
     cx_offset_px=st.floats(-4.0, 4.0),
     cy_offset_px=st.floats(-4.0, 4.0),
 )
+LENSES = st.builds(
+    CameraIntrinsics,
+    fx_px=st.floats(300.0, 900.0),
+    fy_px=st.floats(300.0, 900.0),
+    max_angle_deg=st.sampled_from([0.0, 40.0, 85.0]),
+    distortion_model=st.just("equidistant"),
+    distortion=st.tuples(*[st.floats(0.0, 0.1)] * 4),
+)
+INTRINSICS = PINHOLES | LENSES
 AGENTS = st.builds(
     AgentSpec,
     name=NAMES,

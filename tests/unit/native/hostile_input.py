@@ -9,6 +9,7 @@ does not define. What kernels compute is tested elsewhere. Add a function for ea
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -16,11 +17,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import NativeLibraryError
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import QUICK
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.lens import LENS
+from sailenv_ros.native.lens_models import (
+    lens_models,
+    lens_reach,
+    project_points,
+    unproject_places,
+)
 from sailenv_ros.native.library import using_instruction_set
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
 from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, move_points, transform_points
@@ -40,9 +48,11 @@ from sailenv_ros.rays.triangle_tree import in_leaves, triangle_tree
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import Observation
 from tests.support.baked import baked, chart, layer
 from tests.support.hostile_scenes import hostile_scenes
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of
@@ -90,6 +100,22 @@ def surfaces(*sizes: tuple[int, int]) -> Iterator[NDArray[np.float32]]:
 
 PLAIN = np.array([(500.0, 500.0, 0.5, 0.5, 0.05, 60.0)], LENS)
 WILD = np.array([(np.nan, 1e30, 1e30, -np.inf, np.nan, np.nan)], LENS)
+
+
+def drive_lenses() -> None:
+    """Coefficients, limits, points and places that are no numbers, for every model."""
+    rng = np.random.default_rng(11)
+    wild = np.array(NUMBERS)
+    for model in (*lens_models().values(), None):
+        number = -1 if model is None else model.number
+        for count in (0, 1, 2000):
+            for coefficients in (np.zeros(12), rng.choice(wild, 12), rng.normal(0.0, 0.3, 12)):
+                for limit in (1.0, *NUMBERS):
+                    with contextlib.suppress(NativeLibraryError):
+                        lens_reach(number, tuple(coefficients))
+                        points, places = rng.choice(wild, (count, 3)), rng.choice(wild, (count, 2))
+                        project_points(number, coefficients, limit, points, threads=THREADS[1])
+                        unproject_places(number, coefficients, limit, places, threads=THREADS[1])
 
 
 def drive_annotate() -> None:
@@ -201,6 +227,18 @@ def drive_client_views() -> None:
                 )
 
 
+def bent_lenses_of(width: int, height: int) -> list[CameraIntrinsics]:
+    """Lenses that see little more than ahead, to the side, and all around."""
+    size = {"width": width, "height": height}
+    fisheye = {"distortion_model": "equidistant", "distortion": (0.0,) * 4, "max_angle_deg": 95.0}
+    sphere = {"fx_px": width / 6.3, "fy_px": height / 3.15}
+    return [
+        CameraIntrinsics(distortion_model="plumb_bob", distortion=(-0.2, 0.05, 0.0, 0.0), **size),
+        CameraIntrinsics(fx_px=0.3 * height, fy_px=0.3 * height, **fisheye, **size),
+        CameraIntrinsics(distortion_model="equirectangular", **sphere, **size),
+    ]
+
+
 def drive_drawing() -> None:
     """Poses that are no numbers, triangles without extent, huge and far ones, the eye inside."""
     for threads in THREADS:
@@ -211,8 +249,11 @@ def drive_drawing() -> None:
                 for times in (1, 2):
                     camera = camera_at(width=width, height=height)
                     camera = replace(camera, picture=PictureSettings(supersampling=times))
-                    with np.errstate(all="ignore"):
-                        renderer.render(snapshot, None, camera, ("rgb", "depth", "normals"))
+                    for lens in (camera.intrinsics, *bent_lenses_of(width, height)):
+                        seen = replace(camera, intrinsics=lens)
+                        past = Observation(snapshot=snapshot, camera=seen)
+                        with np.errstate(all="ignore"):
+                            renderer.render(snapshot, past, seen, ("rgb", "flow", "normals"))
         renderer.close()
     renderer = NativeRenderer(threads=2)
     scene = snapshot_of([Thing(model_of(box_mesh(1.0), alpha="blend"), Pose((0.0, 0.0, 0.0)))])
@@ -281,8 +322,10 @@ def drive_alone() -> None:
             snapshot = make()
             for width, height in ((8, 8), (97, 61)):
                 drawing = AmodalRenderer(threads=threads)
-                with np.errstate(all="ignore"):
-                    drawing.draw(snapshot, camera_at(width=width, height=height))
+                camera = camera_at(width=width, height=height)
+                for lens in (camera.intrinsics, *bent_lenses_of(width, height)):
+                    with np.errstate(all="ignore"):
+                        drawing.draw(snapshot, replace(camera, intrinsics=lens))
                 drawing.close()
     drawing = AmodalRenderer(threads=2)
     around = snapshot_of([Thing(model_of(box_mesh(4.0), double_sided=True), Pose())])
@@ -302,6 +345,7 @@ def drive_instance_measures() -> None:
 DRIVERS: tuple[Callable[[], None], ...] = (
     drive_self_test,
     drive_png_data,
+    drive_lenses,
     drive_annotate,
     drive_motion,
     drive_rays,

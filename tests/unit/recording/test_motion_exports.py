@@ -13,7 +13,7 @@ import pytest
 
 from sailenv_ros.dataset.formats import export
 from sailenv_ros.dataset.formats.dataset_writer import DatasetWriter
-from sailenv_ros.dataset.formats.movi import load_movi_frame
+from sailenv_ros.dataset.formats.movi import lens_arrays, lens_of, load_movi_frame
 from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import SceneGeometry, motion, track
@@ -150,6 +150,45 @@ def test_movi_files_are_frames_again(bag: tuple[Path, list[Frame]], tmp_path: Pa
     (tmp_path / "broken.npz").write_bytes(b"PK\x03\x04 cut off")
     with pytest.raises(RecordingError, match="no frame of the format movi"):
         load_movi_frame(tmp_path / "broken.npz")
+
+
+LENSES = [
+    CameraIntrinsics(width=96, height=64),
+    CameraIntrinsics(width=96, height=64, cy_offset_px=3.25),
+    CameraIntrinsics(width=96, height=64, fx_px=70.5, fy_px=60.25, cx_offset_px=-2.5),
+    CameraIntrinsics(fx_px=300.0, fy_px=310.0, max_angle_deg=50.0),
+    CameraIntrinsics(
+        vertical_fov_deg=150.0,
+        max_angle_deg=100.0,
+        distortion_model="equidistant",
+        distortion=(0.01, 0.0, -0.001, 0.0),
+    ),
+]
+
+
+@pytest.mark.parametrize("lens", LENSES)
+def test_movi_files_keep_the_lens(lens: CameraIntrinsics, tmp_path: Path) -> None:
+    """Of any kind; a plain one is written as it always was."""
+    np.savez(tmp_path / "one.npz", **lens_arrays(lens))
+    with np.load(tmp_path / "one.npz", allow_pickle=False) as arrays:
+        assert lens_of(dict(arrays)) == lens
+        if lens == LENSES[0]:
+            assert arrays.files == ["lens"]
+            assert arrays["lens"].tolist() == [96.0, 64.0, 60.0, 0.05, 100.0]
+
+
+def test_a_recording_keeps_the_lens(tmp_path: Path) -> None:
+    """With focal lengths of its own."""
+    lens = LENSES[2]
+    spec = AgentSpec(name="eye", intrinsics=lens, rate_hz=10.0)
+    with (
+        Simulation("optical", mode="lockstep", agent=spec) as simulation,
+        RecordingWriter(tmp_path / "bag") as writer,
+    ):
+        record_lockstep(simulation, writer, frames=1, agents=["eye"], views=("depth",))
+    with RecordingReader(tmp_path / "bag") as reader:
+        (frame,) = RecordedFrames(reader, "eye")
+    assert frame.camera.intrinsics == lens
 
 
 def test_tapvid_points_are_tracks_in_raster_coordinates(

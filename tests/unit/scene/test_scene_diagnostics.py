@@ -243,8 +243,8 @@ ENTRIES = {
     "view": (
         "version: 1\nagents: [{name: a, views: [rgb, dept]}]\n",
         "2:33: agents[0].views[1]: must be one of: rgb, depth, category, instance, flow, "
-        "flow_valid, occlusion, normals, albedo, uv, object_coords (did you mean 'depth'?), got "
-        "'dept'",
+        "flow_valid, occlusion, range, lens_valid, normals, albedo, uv, object_coords "
+        "(did you mean 'depth'?), got 'dept'",
     ),
     "view named twice": (
         "version: 1\nagents: [{name: a, views: [rgb, rgb]}]\n",
@@ -261,6 +261,42 @@ ENTRIES = {
     "an axis beside the picture": (
         "version: 1\nagents: [{name: a, width: 100, cx_offset: -50.5}]\n",
         "2:43: agents[0].cx_offset: is refused: it must be within half of width, 50, got -50.5",
+    ),
+    "an angle of view that a pin-hole has not": (
+        "version: 1\nagents: [{name: a, vertical_fov: 175}]\n",
+        "2:34: agents[0].vertical_fov: must be a number from 1 to 170 [deg], got 175",
+    ),
+    "an unknown model of lenses": (
+        "version: 1\nagents: [{name: a, distortion_model: plumbbob}]\n",
+        "2:38: agents[0].distortion_model: must be one of: pinhole, plumb_bob, "
+        "rational_polynomial, equidistant, double_sphere, mei, equirectangular, orthographic (did "
+        "you mean 'plumb_bob'?), got 'plumbbob'",
+    ),
+    "too few coefficients": (
+        "version: 1\nagents:\n- name: a\n  distortion_model: plumb_bob\n  distortion: [0.1, 0.2]\n",
+        "5:15: agents[0].distortion: must be 4 or 5 finite numbers, the coefficients k1 k2 p1 p2 "
+        "k3 of plumb_bob, got [0.1, 0.2]",
+    ),
+    "no coefficients at all": (
+        "version: 1\nagents: [{name: a, distortion_model: equidistant}]\n",
+        "2:38: agents[0].distortion_model: does not fit: distortion must be 4 finite numbers, the "
+        "coefficients k1 k2 k3 k4 of equidistant, got []",
+    ),
+    "one focal length": (
+        "version: 1\nagents: [{name: a, fx: 300}]\n",
+        "2:24: agents[0].fx: does not fit: fy must be above 0 [px] where the other focal length "
+        "is; or both 0, got 0.0",
+    ),
+    "a lens that folds in the picture": (
+        "version: 1\nagents:\n- {name: a, distortion_model: plumb_bob, fx: 200, fy: 200,\n"
+        "   distortion: [-0.5, 0, 0, 0]}\n",
+        "4:16: agents[0].distortion: must be coefficients that do not fold within the picture, or "
+        "max_angle must be less than 39.2315 [deg], where these fold, got [-0.5, 0.0, 0.0, 0.0]",
+    ),
+    "an image circle beyond the model's": (
+        "version: 1\nagents: [{name: a, max_angle: 95}]\n",
+        "2:31: agents[0].max_angle: must be at most 89.5 [deg], where the law of pinhole ends, got "
+        "95.0",
     ),
     "an agent turned nowhere": (
         "version: 1\nagents: [{name: a, rotation: [0, 0, 9]}]\n",

@@ -192,6 +192,30 @@ def test_an_axis_off_the_centre_is_written_and_read_again() -> None:
     assert agent_entry(centred, None) == {"name": "eye", "width": 320}
 
 
+def test_a_lens_is_written_and_read_again() -> None:
+    """With its model, coefficients, focal lengths and image circle."""
+    lens = CameraIntrinsics(
+        fx_px=400.5,
+        fy_px=410.25,
+        cx_offset_px=3.5,
+        max_angle_deg=70.0,
+        distortion_model="equidistant",
+        distortion=(0.01, -0.002, 0.0, 0.0001),
+    )
+    given = AgentSpec(name="eye", intrinsics=lens)
+    entry = agent_entry(given, None)
+    assert entry == {
+        "name": "eye",
+        "cx_offset": 3.5,
+        "fx": 400.5,
+        "fy": 410.25,
+        "max_angle": 70.0,
+        "distortion_model": "equidistant",
+        "distortion": [0.01, -0.002, 0.0, 0.0001],
+    }
+    assert AgentSpecModel(**entry).to_agent_spec() == given
+
+
 def test_a_category_keeps_its_colour_byte_for_byte() -> None:
     spec = CategorySpec(name="rocket", id=200, colour="#01fe80")
     assert spec.to_category() == Category(id=200, name="rocket", colour=(1, 254, 128))

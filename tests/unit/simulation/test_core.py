@@ -414,6 +414,18 @@ def test_a_picture_of_too_many_samples_changes_nothing(core: SynchronousSimulati
     assert core.info.agents == before
 
 
+def test_a_lens_that_nothing_draws_through_changes_nothing(core: SynchronousSimulation) -> None:
+    """Neither an agent nor its intrinsics: else each of its frames would fail."""
+    parallel = CameraIntrinsics(distortion_model="orthographic", fx_px=90.0, fy_px=90.0)
+    with pytest.raises(InvalidRequest, match="distortion_model must be a model whose rays meet"):
+        core.register_agent(replace(spec(rate_hz=0.0), intrinsics=parallel))
+    core.register_agent(spec(rate_hz=0.0))
+    before = core.info.agents
+    with pytest.raises(InvalidRequest, match="distortion_model must be a model whose rays meet"):
+        core.set_intrinsics(parallel, agent="eye")
+    assert core.info.agents == before
+
+
 def test_a_changed_rate_begins_on_its_own_grid(core: SynchronousSimulation) -> None:
     """Frames fall on multiples of the new interval, from the next on; a reset keeps the rate."""
     core.register_agent(spec(rate_hz=30.0))

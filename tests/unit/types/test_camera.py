@@ -127,7 +127,7 @@ def test_numbers_make_the_lens_again(lens: CameraIntrinsics) -> None:
     """All of them in one order, but those that an axis in the centre does not need."""
     assert CameraIntrinsics(**lens.numbers()) == lens  # type: ignore[arg-type]  # sizes are whole
     downwards = replace(lens, cx_offset_px=0.0, cy_offset_px=1.0)
-    assert [*downwards.numbers()] == [*INTRINSICS_LIMITS]
+    assert [*downwards.numbers()] == [*INTRINSICS_LIMITS][:7]
     centred = replace(lens, cx_offset_px=0.0, cy_offset_px=0.0)
     assert [*centred.numbers()] == ["width", "height", "vertical_fov_deg", "near_m", "far_m"]
 

@@ -6,21 +6,23 @@
 #include "record.h"
 #include "scratch.h"
 
-#define AMBIENT_FIELDS(FIELD)                                                           \
-    FIELD(int64_t, height)                                                              \
-    FIELD(int64_t, width)                                                               \
-    FIELD(const float*, surface) /* (H, W, 2): depth [m], id */                         \
-    FIELD(const uint8_t*, baked) /* (65536,) */                                         \
-    FIELD(const float*, pattern) /* (16, 2, TAPS) */                                    \
-    FIELD(const sailenv::Lens*, lens)                                                   \
-    FIELD(double, radius_m)                                                             \
-    FIELD(double, least_reach_px) /* of the radius, in samples */                       \
-    FIELD(double, reach_px)                                                             \
-    FIELD(double, bias)                                                                 \
-    FIELD(double, scale)        /* how much one tap that hides everything takes away */ \
-    FIELD(double, same_surface) /* share of its depth a sample lies off another's */    \
-    FIELD(int64_t, step)        /* from one sample to the next of the second average */ \
-    FIELD(float*, inverse)      /* (h, w), half the size, rounded up */                 \
+#define AMBIENT_FIELDS(FIELD)                                                            \
+    FIELD(int64_t, height)                                                               \
+    FIELD(int64_t, width)                                                                \
+    FIELD(const float*, surface) /* (H, W, 2): depth [m], id */                          \
+    FIELD(const uint8_t*, baked) /* (65536,) */                                          \
+    FIELD(const float*, pattern) /* (16, 2, TAPS) */                                     \
+    FIELD(const sailenv::Lens*, lens)                                                    \
+    FIELD(const float*, rays) /* (h, w, 3): rays of any length, and the surface holds */ \
+                              /* distances along them; null through a pin-hole */        \
+    FIELD(double, radius_m)                                                              \
+    FIELD(double, least_reach_px) /* of the radius, in samples */                        \
+    FIELD(double, reach_px)                                                              \
+    FIELD(double, bias)                                                                  \
+    FIELD(double, scale)        /* how much one tap that hides everything takes away */  \
+    FIELD(double, same_surface) /* share of its depth a sample lies off another's */     \
+    FIELD(int64_t, step)        /* from one sample to the next of the second average */  \
+    FIELD(float*, inverse)      /* (h, w), half the size, rounded up */                  \
     FIELD(uint8_t*, visibility)
 
 SAILENV_RECORD(Ambient, ambient_visibility, AMBIENT_FIELDS)
@@ -48,14 +50,22 @@ struct Samples {
     float* depth;          // (rows, columns): 1 / inverse, with its sign
     const uint8_t* tiles;  // (tile rows, tile columns): 1 where something may be darkened
     int64_t tile_columns;
+    const float* rays;  // (rows, columns, 3), or null
 };
+
+// The length of a sample's ray, over which the surface's distance is; 1 through a pin-hole.
+LANES_INLINE float ray_length(const Samples& s, int64_t place) {
+    if (s.rays == nullptr) return 1.0f;
+    const float* ray = s.rays + 3 * place;
+    return __builtin_sqrtf(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
+}
 
 void halve_rows(const float* surface, int64_t width, const uint8_t* baked, const Samples& s,
                 uint8_t* own_tiles, int64_t first, int64_t last) {
     for (int64_t v = first; v < last; v++) {
         const float* row = surface + 4 * v * width;
         for (int64_t u = 0; u < s.columns; u++) {
-            const float z = row[4 * u], id = row[4 * u + 1];
+            const float z = row[4 * u] / ray_length(s, v * s.columns + u), id = row[4 * u + 1];
             const bool hit = z > 1.0f / FAR_M && z < FAR_M;
             const bool known = id >= 0.0f && id < INSTANCES;
             const bool is_baked = hit && known && baked[static_cast<int32_t>(id)] != 0;
@@ -99,6 +109,35 @@ LANES_INLINE f8 slope(f8 before, f8 after, i8 no_before, i8 no_after) {
     return select8(takes_after, after, before);
 }
 
+// Rays of eight samples.
+LANES_INLINE sailenv::Vec3x8 rays_at(const Samples& s, i8 places) {
+    sailenv::Vec3x8 found;
+    for (int k = 0; k < 8; k++) {
+        const float* ray = s.rays + 3 * static_cast<int64_t>(places[k]);
+        found.x[k] = ray[0];
+        found.y[k] = ray[1];
+        found.z[k] = ray[2];
+    }
+    return found;
+}
+
+// How rays change from each sample of a row to the next one, the last one's from the one before.
+struct RayChanges {
+    sailenv::Vec3x8 ray, right, down;
+};
+LANES_INLINE RayChanges ray_changes(const Samples& s, int64_t v, i8 columns) {
+    const int32_t row = static_cast<int32_t>(v * s.columns), wide = static_cast<int32_t>(s.columns);
+    const i8 last = splat(wide - 1), own = columns < last ? columns : last;
+    const i8 after = own < last ? own + 1 : own, before = own < last ? own : own - 1;
+    const int32_t below = v + 1 < s.rows ? row + wide : row;
+    const int32_t above = v + 1 < s.rows ? row : row - wide;
+    return {rays_at(s, own + row), rays_at(s, after + row) - rays_at(s, before + row),
+            rays_at(s, own + below) - rays_at(s, own + above)};
+}
+
+// Through a lens that bends lines (`BENDS`) samples lie at distances along unit rays, else at
+// depths.
+template <bool BENDS>
 void find_row(const Samples& s, const Settings& set, const float* pattern, int64_t v,
               uint8_t* out) {
     const float* row = s.inverse + v * s.columns;
@@ -127,7 +166,12 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
         }
         const f8 own = load_some(row + u, count);
         const f8 w = abs8(own);
-        const f8 reach = min8(set.radius_m * set.lens.fx * w, splat(set.reach_px));
+        const f8 column = counting() + static_cast<float>(u);
+        RayChanges rays;
+        if (BENDS) rays = ray_changes(s, v, truncated(column));
+        const f8 focal = BENDS ? 1.0f / sqrt8(max8(dot(rays.right, rays.right), splat(1e-20f)))
+                               : splat(set.lens.fx);
+        const f8 reach = min8(set.radius_m * focal * w, splat(set.reach_px));
         const i8 active = reach >= set.least_reach_px;
         if (!any(active)) {
             memset(out + u, 255, static_cast<size_t>(count));
@@ -153,14 +197,30 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
         f8 b = slope(w - abs8(load_some(above + u, count)), abs8(load_some(below + u, count)) - w,
                      v == 0 ? ~none : none, v + 1 == s.rows ? ~none : none);
         // The plane is where (a, b, c) · point = 1.
-        a = a * set.lens.fx;
-        b = b * set.lens.fy;
-        const f8 column = counting() + static_cast<float>(u);
-        const f8 x = set.lens.ray_x(column);
-        const f8 c = w - a * x - b * y;
-        const f8 plane_m = one / sqrt8(a * a + b * b + c * c);
+        f8 c, px, py, pz;
         const f8 z = one / w;
-        const f8 px = x * z, py = y * z;
+        if (BENDS) {
+            // Of the plane's (a, b, c) the shares along the ray and its changes are known.
+            const sailenv::Vec3x8 across = cross(rays.right, rays.down);
+            const sailenv::Vec3x8 plane =
+                (across * w + cross(rays.down, rays.ray) * a + cross(rays.ray, rays.right) * b) /
+                dot(rays.ray, across);
+            a = plane.x;
+            b = plane.y;
+            c = plane.z;
+            px = rays.ray.x * z;
+            py = rays.ray.y * z;
+            pz = rays.ray.z * z;
+        } else {
+            a = a * set.lens.fx;
+            b = b * set.lens.fy;
+            const f8 x = set.lens.ray_x(column);
+            c = w - a * x - b * y;
+            px = x * z;
+            py = y * z;
+            pz = z;
+        }
+        const f8 plane_m = one / sqrt8(a * a + b * b + c * c);
         // Keeps rounding from making the point its own neighbour.
         const f8 self_m2 = 1e-7f * z * z;
         const f8 fu = column + 0.5f, fv = splat(static_cast<float>(v) + 0.5f);
@@ -175,10 +235,17 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             const i8 place = tv * columns + tu;
             f8 other;
             for (int k = 0; k < 8; k++) other[k] = s.depth[place[k]];
-            const f8 tz = abs8(other);
-            const f8 qx = set.lens.ray_x(to_float(tu)) * tz;
-            const f8 qy = set.lens.ray_y(to_float(tv)) * tz;
-            const f8 dx = qx - px, dy = qy - py, dz = tz - z;
+            f8 tz = abs8(other), qx, qy;
+            if (BENDS) {
+                const sailenv::Vec3x8 there = rays_at(s, place) * tz;
+                qx = there.x;
+                qy = there.y;
+                tz = there.z;
+            } else {
+                qx = set.lens.ray_x(to_float(tu)) * tz;
+                qy = set.lens.ray_y(to_float(tv)) * tz;
+            }
+            const f8 dx = qx - px, dy = qy - py, dz = tz - pz;
             const f8 d2 = dx * dx + dy * dy + dz * dz + self_m2;
             const f8 fall = max8(one - d2 * per_r2, zero);
             const f8 height_m = (one - (a * qx + b * qy + c * tz)) * plane_m;
@@ -266,7 +333,8 @@ void average_rows(const Samples& s, const Settings& set, const uint8_t* share, i
 SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
     const Ambient& in = *given;
     const int64_t height = in.height, width = in.width, step = in.step;
-    if (height < 1 || width < 1 || step < 1 || step > MOST_STEP) {
+    const bool narrow = in.rays != nullptr && (height < 3 || width < 3);
+    if (height < 1 || width < 1 || step < 1 || step > MOST_STEP || narrow) {
         return sailenv::STATUS_INVALID_ARGUMENT;
     }
     const auto in_single = [](double x) { return static_cast<float>(x); };
@@ -285,7 +353,8 @@ SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
     if (!depth || !tiles || !raw || !bands) return sailenv::STATUS_OUT_OF_MEMORY;
     uint8_t* own = tiles.get() + tile_count;
     memset(tiles.get(), 0, static_cast<size_t>(2 * tile_count));
-    const Samples samples{rows, columns, in.inverse, depth.get(), tiles.get(), tile_columns};
+    const Samples samples{rows,        columns,      in.inverse, depth.get(),
+                          tiles.get(), tile_columns, in.rays};
     sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t) {
         halve_rows(in.surface, width, in.baked, samples, own + first / TILE * tile_columns, first,
                    last);
@@ -294,7 +363,8 @@ SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
     dilate_tiles(own, tile_rows, tile_columns, reach, tiles.get());
     sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t v = first; v < last; v++) {
-            find_row(samples, set, in.pattern, v, raw.get() + v * columns);
+            const auto find = in.rays == nullptr ? find_row<false> : find_row<true>;
+            find(samples, set, in.pattern, v, raw.get() + v * columns);
         }
     });
     uint8_t* means = raw.get() + rows * columns;
@@ -306,5 +376,11 @@ SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
     };
     average(raw.get(), 1, means);
     average(means, step, in.visibility);
+    if (in.rays != nullptr) {
+        // From shares of the rays back to distances.
+        for (int64_t k = 0; k < rows * columns; k++) {
+            if (in.inverse[k] != -1.0f / FAR_M) in.inverse[k] /= ray_length(samples, k);
+        }
+    }
     return sailenv::STATUS_OK;
 }

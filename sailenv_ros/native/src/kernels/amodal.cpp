@@ -41,11 +41,13 @@ struct Rectangle {
 };
 
 // Turns a row of inverse_depth to depths, infinite where there is nothing; counts those that are
-// not.
-int64_t set_depths(float* row, int64_t count, float least_inverse_depth, float far_m) {
+// not. Through a lens that has a table, whose row begins at `at`, to distances along the rays.
+int64_t set_depths(float* row, int64_t count, float least_inverse_depth, float far_m,
+                   const LensTable* lens, int64_t at) {
     int32_t covered = 0;
     for (int64_t k = 0; k < count; k++) {
-        const float n = row[k], z = 1.0f / n;
+        const float n = row[k], depth = 1.0f / n;
+        const float z = lens == nullptr ? depth : depth * stretch(lens->x[at + k], lens->y[at + k]);
         const bool there = n > least_inverse_depth && !(z > far_m);
         row[k] = there ? z : __builtin_inff();
         covered += there;
@@ -99,7 +101,9 @@ void draw_object(const Projection& canvas, const Scratch& shared, const Instance
     const int32_t left = std::max(reach.x0, 0), right = std::min(reach.x1, canvas.width - 1);
     for (int32_t y = reach.y0; y <= reach.y1; y++) {
         float* row = pixels + (y - reach.y0) * stride;
-        const int64_t covered = set_depths(row, width, canvas.least_inverse_depth, far_m);
+        const LensTable* lens = canvas.table;
+        const int64_t covered = set_depths(row, width, canvas.least_inverse_depth, far_m, lens,
+                                           lens == nullptr ? 0 : y * lens->stride + reach.x0);
         if (covered == 0) continue;
         result[0] += include_row(row, reach.x0, reach.x0, reach.x1, y, whole);
         if (y >= 0 && y < canvas.height && left <= right) {
@@ -141,7 +145,8 @@ SAILENV_KERNEL(free_amodal_scratch)(sailenv::AmodalScratch** made) {
 }
 
 // Draws `count` objects, each alone: the parts from `starts[k]` to `starts[k + 1]`. They are drawn
-// on a canvas of three pictures' width and height, in whose middle the picture lies. `results`
+// on a canvas of three pictures' width and height, in whose middle the picture lies; through a lens
+// that has a table on the picture alone, with distances along the rays for depths. `results`
 // (count, 10) takes of each object: the pixels that it covers on the canvas and in the picture; the
 // boxes around the ones and around the others (left, top, right, bottom, the last ones included; -1
 // where it covers none).
@@ -160,10 +165,12 @@ SAILENV_KERNEL(draw_amodal)
         }
     }
     Projection canvas = projection_of(*view);
-    canvas.x0 = -canvas.width;
-    canvas.y0 = -canvas.height;
-    canvas.x1 = 2 * canvas.width - 1;
-    canvas.y1 = 2 * canvas.height - 1;
+    if (canvas.table == nullptr) {
+        canvas.x0 = -canvas.width;
+        canvas.y0 = -canvas.height;
+        canvas.x1 = 2 * canvas.width - 1;
+        canvas.y1 = 2 * canvas.height - 1;
+    }
     try {
         AmodalScratch& scratch = **handle;
         scratch.shared.band_rows = ONE_BAND;

@@ -8,14 +8,17 @@
 #include "lens.h"
 #include "record.h"
 
-#define ANNOTATE_FIELDS(FIELD)                                                 \
-    FIELD(int64_t, height)                                                     \
-    FIELD(int64_t, width)                                                      \
-    FIELD(const float*, surface)                /* (H, W, 2): depth [m], id */ \
-    FIELD(const uint8_t*, category_of_instance) /* (65536,) */                 \
-    FIELD(const sailenv::Lens*, lens)                                          \
-    FIELD(float*, depth)                                                       \
-    FIELD(uint8_t*, category)  /* or null */                                   \
+#define ANNOTATE_FIELDS(FIELD)                                                    \
+    FIELD(int64_t, height)                                                        \
+    FIELD(int64_t, width)                                                         \
+    FIELD(const float*, surface)                /* (H, W, 2): depth [m], id */    \
+    FIELD(const uint8_t*, category_of_instance) /* (65536,) */                    \
+    FIELD(const sailenv::Lens*, lens)                                             \
+    FIELD(const float*, along) /* (H, W), or null: z of unit rays; the surface */ \
+                               /* holds distances along them then */              \
+    FIELD(float*, depth)                                                          \
+    FIELD(float*, range)       /* or null; only beside `along` */                 \
+    FIELD(uint8_t*, category)  /* or null */                                      \
     FIELD(uint16_t*, instance) /* or null */
 
 SAILENV_RECORD(Annotate, annotate, ANNOTATE_FIELDS)
@@ -54,10 +57,26 @@ void split_surfaces(const Annotate& in, float near_m, float far_m, int64_t at, i
     }
 }
 
+// Depths along the axis from distances along rays. Where the lens sees nothing, neither is known;
+// what is infinitely far is so along the axis, too.
+void set_depths(const float* along, int64_t count, Surfaces& found, float* depth) {
+    for (int64_t k = 0; k < count; k++) {
+        const float share = along[k], range = found.depth[k];
+        if (share != share) found.depth[k] = share;
+        depth[k] = share == share && range == __builtin_inff() ? range : range * share;
+    }
+}
+
 void annotate_chunk(const Annotate& in, float near_m, float far_m, int64_t at, int64_t count) {
     Surfaces found;
     split_surfaces(in, near_m, far_m, at, count, found);
-    memcpy(in.depth + at, found.depth, sizeof(float) * static_cast<size_t>(count));
+    const size_t size = sizeof(float) * static_cast<size_t>(count);
+    if (in.along == nullptr) {
+        memcpy(in.depth + at, found.depth, size);
+    } else {
+        set_depths(in.along + at, count, found, in.depth + at);
+        if (in.range != nullptr) memcpy(in.range + at, found.depth, size);
+    }
     if (in.category == nullptr && in.instance == nullptr) return;
     for (int64_t first = 0; first < count;) {
         const float key = found.key[first];

@@ -49,17 +49,21 @@ struct Plane {
     float square;
 };
 LANES_INLINE Plane plane_of(const Shading& s, const Triangle& t) {
-    const vec3 normal = s.lens.direction(t.inverse_depth);
+    vec3 normal = s.lens.direction(t.inverse_depth);
+    if (s.table != nullptr) normal = s.camera_from_face[t.face] * normal;
     return {normal, dot(normal, normal)};
 }
 
-// Tells if two triangles belong to one smooth surface around a place.
-LANES_INLINE bool are_alike(const Triangle& a, const Plane& p, const Triangle& b, const Plane& q,
-                            float x, float y) {
+// Tells if two triangles belong to one smooth surface around a place, which is one of the second's
+// face.
+LANES_INLINE bool are_alike(const Shading& s, const Triangle& a, const Plane& p, const Triangle& b,
+                            const Plane& q, float x, float y) {
     if (a.part != b.part) return false;
     const float there = b.inverse_depth[0] * x + (b.inverse_depth[1] * y + b.inverse_depth[2]);
-    const float off =
-        a.inverse_depth[0] * x + (a.inverse_depth[1] * y + a.inverse_depth[2]) - there;
+    const float other = a.face == b.face
+                            ? a.inverse_depth[0] * x + (a.inverse_depth[1] * y + a.inverse_depth[2])
+                            : dot(p.normal, ray_at(s.camera_from_face[b.face], x, y));
+    const float off = other - there;
     if (__builtin_fabsf(off) > SAME_INVERSE_DEPTH * there) return false;
     const float along = dot(p.normal, q.normal);
     return along > 0.0f && along * along >= LEAST_COSINE * LEAST_COSINE * (p.square * q.square);
@@ -68,17 +72,38 @@ LANES_INLINE bool are_alike(const Triangle& a, const Plane& p, const Triangle& b
 // A surface that samples of a pixel see: its first one, and the weight of all.
 struct Seen {
     uint32_t tag;
+    int32_t face;
     float x, y, weight;
     const Triangle* triangle;  // null for nothing
     Plane plane;
 };
 
-// A function a x + b y + c of the place in a pixel, whose middle is the origin.
+// The middle of a pixel, and how places change from pixel to pixel.
+struct Middle {
+    float x, y;
+    float x_right, y_right, x_down, y_down;
+    int32_t face;
+};
+Middle middle_of(const Shading& s, int32_t x, int32_t y) {
+    if (s.table == nullptr) {
+        return {static_cast<float>(x), static_cast<float>(y), 1.0f, 0.0f, 0.0f, 1.0f, 0};
+    }
+    const LensTable& lens = *s.table;
+    const int64_t at = y * lens.stride + x;
+    const PixelStep steps = step_at(lens, y, x);
+    return {lens.x[at],   lens.y[at],   steps.x_right, steps.y_right,
+            steps.x_down, steps.y_down, lens.face[at]};
+}
+
+// A function a x + b y + c of the place in a pixel, whose middle is the origin. Through a lens that
+// bends lines they are straight within a pixel.
 struct Line {
     float a, b, c;
 };
-LANES_INLINE Line line_at(const float* plane, float x, float y, float sign) {
-    return {sign * plane[0], sign * plane[1], sign * (plane[0] * x + (plane[1] * y + plane[2]))};
+LANES_INLINE Line line_at(const float* plane, const Middle& m, float sign) {
+    return {sign * (plane[0] * m.x_right + plane[1] * m.y_right),
+            sign * (plane[0] * m.x_down + plane[1] * m.y_down),
+            sign * (plane[0] * m.x + (plane[1] * m.y + plane[2]))};
 }
 
 // Share of the pixel's square where the line's function is above 0.
@@ -113,13 +138,14 @@ bool separates(const Line& line, const int32_t* surface) {
 // the surface leave less. Below 0 if none lies between the samples. Of small or thin triangles
 // others may lie between them and the surface's end. `inside` is 1 for the second surface, -1 for
 // the first one.
-float share_within(const Triangle& t, const int32_t* surface, float x, float y, float inside) {
+float share_within(const Triangle& t, const int32_t* surface, const Middle& middle, float inside) {
     float most = -1.0f;
     // At the opposite corner an edge's function is this, if the triangle's depth varies little.
     const float opposite =
-        (t.inverse_depth[0] * x + (t.inverse_depth[1] * y + t.inverse_depth[2])) / t.inverse_det;
+        (t.inverse_depth[0] * middle.x + (t.inverse_depth[1] * middle.y + t.inverse_depth[2])) /
+        t.inverse_det;
     for (int32_t j = 0; j < 3; j++) {
-        const Line line = line_at(t.edge + 3 * j, x, y, inside);
+        const Line line = line_at(t.edge + 3 * j, middle, inside);
         const float slope = line.a * line.a + line.b * line.b;
         const bool high = opposite * opposite >= LEAST_HEIGHT_PX * LEAST_HEIGHT_PX * slope;
         if (!high || !separates(line, surface)) continue;
@@ -131,17 +157,20 @@ float share_within(const Triangle& t, const int32_t* surface, float x, float y, 
 
 // Share of a pixel that the second of two surfaces covers where a straight edge of one of them
 // ends it, or where both meet; below 0 if neither is so.
-float exact_share(const Seen* seen, const int32_t* surface, float x, float y) {
+float exact_share(const Seen* seen, const int32_t* surface, const Middle& middle) {
     const Triangle *first = seen[0].triangle, *second = seen[1].triangle;
+    for (const Triangle* t : {first, second}) {
+        if (t != nullptr && t->face != middle.face) return -1.0f;
+    }
     const Line empty = {0.0f, 0.0f, -1.0f};
-    const Line a = first == nullptr ? empty : line_at(first->inverse_depth, x, y, 1.0f);
-    const Line b = second == nullptr ? empty : line_at(second->inverse_depth, x, y, 1.0f);
+    const Line a = first == nullptr ? empty : line_at(first->inverse_depth, middle, 1.0f);
+    const Line b = second == nullptr ? empty : line_at(second->inverse_depth, middle, 1.0f);
     // What is in front ends the other.
     const bool second_first = b.c > a.c;
     for (const bool of_second : {second_first, !second_first}) {
         const Triangle* t = of_second ? second : first;
         if (t == nullptr) continue;
-        const float share = share_within(*t, surface, x, y, of_second ? 1.0f : -1.0f);
+        const float share = share_within(*t, surface, middle, of_second ? 1.0f : -1.0f);
         if (share >= 0.0f) return of_second ? share : 1.0f - share;
     }
     if (first == nullptr || second == nullptr) return -1.0f;
@@ -166,17 +195,31 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
         while (k < count && seen[k].tag != tag) k++;
         if (k == count && last_surface >= 0 && tag == last) k = last_surface;
         if (k == count) {
-            const float at_x = static_cast<float>(x) + 0.5f * static_cast<float>(sample.column - 1);
-            const float at_y = static_cast<float>(y) + 0.5f * static_cast<float>(sample.row - 1);
+            float at_x = static_cast<float>(x) + 0.5f * static_cast<float>(sample.column - 1);
+            float at_y = static_cast<float>(y) + 0.5f * static_cast<float>(sample.row - 1);
+            int32_t face = 0;
+            if (s.table != nullptr) {
+                const LensTable& lens = *s.fine_table;
+                const int64_t at = (2 * y + sample.row) * lens.stride + 2 * x + sample.column;
+                at_x = lens.x[at];
+                at_y = lens.y[at];
+                face = lens.face[at];
+                if (!(at_x == at_x)) {
+                    // What the lens does not see counts as what it sees beside it.
+                    if (number == 0) return;
+                    surface[number] = 0;
+                    continue;
+                }
+            }
             Seen& own = seen[count];
-            own = {tag, at_x, at_y, 0.0f, nullptr, {}};
+            own = {tag, face, at_x, at_y, 0.0f, nullptr, {}};
             if (tag != NOTHING) {
                 own.triangle = s.set->triangles.data() + tag;
                 own.plane = plane_of(s, *own.triangle);
                 for (k = 0; k < count; k++) {
                     const Seen& other = seen[k];
                     if (other.triangle != nullptr &&
-                        are_alike(*other.triangle, other.plane, *own.triangle, own.plane, at_x,
+                        are_alike(s, *other.triangle, other.plane, *own.triangle, own.plane, at_x,
                                   at_y)) {
                         break;
                     }
@@ -193,20 +236,23 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
         surface[number] = k;
     }
     if (count == 2) {
-        const float share =
-            exact_share(seen, surface, static_cast<float>(x), static_cast<float>(y));
+        const float share = exact_share(seen, surface, middle_of(s, x, y));
         if (share >= 0.0f) seen[1].weight = share;
     }
     for (int32_t k = 1; k < count; k++) {
-        out.push_back({seen[k].x, seen[k].y, seen[k].weight, seen[k].tag, x, y});
+        out.push_back({seen[k].x, seen[k].y, seen[k].weight, seen[k].tag, x, y, seen[k].face});
     }
 }
 
 // Of which of eight pixels the samples do not lie in one plane. `corner` is their first sample.
-LANES_INLINE i8 bent(const Shading& s, const float* corner, int64_t stride) {
+LANES_INLINE i8 bent(const Shading& s, const float* corner, int64_t stride, int32_t x, int32_t y) {
     const float* middle = corner + stride + 1;
     const f8 own = every_second(middle);
-    const f8 least = own * (ray_length(s.lens, LEAST_BEND));
+    f8 least = own * (ray_length(s.lens, LEAST_BEND));
+    if (s.table != nullptr) {
+        const LensSteps steps = steps_at(*s.table, y, x);
+        least = least * sqrt8(steps.x_right * steps.x_right + steps.y_right * steps.y_right);
+    }
     i8 found{};
     for (const int64_t step : {int64_t{1}, stride - 1, stride, stride + 1}) {
         const f8 both = every_second(middle - step) + every_second(middle + step);
@@ -241,7 +287,7 @@ void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratc
             }
             if (!any(differs)) continue;
             const int64_t at = corner - scratch.visible.data();
-            const i8 bends = bent(s, scratch.inverse_depth.data() + at, stride);
+            const i8 bends = bent(s, scratch.inverse_depth.data() + at, stride, x, y);
             const int32_t rest = static_cast<int32_t>(s.width) - x, count = rest < 8 ? rest : 8;
             for (int32_t k = 0; k < count; k++) {
                 if (differs[k] == 0) continue;

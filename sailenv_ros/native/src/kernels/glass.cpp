@@ -27,17 +27,21 @@ struct Base8 {
     f8 alpha;
 };
 
-Base8 base_colour(const Part& part, const Planes& p, const Triangle& t, f8 depth, f8 u, f8 v,
-                  i8 wanted) {
+template <class Steps>
+Base8 base_colour(const Part& part, const Planes& p, const Triangle& t, const Steps& steps,
+                  f8 depth, f8 u, f8 v, i8 wanted) {
     const float* factor = part.colour;
     if (part.colour_map == nullptr) {
         return {splat(vec3(factor[0], factor[1], factor[2])), splat(factor[3])};
     }
     const i8 size = splat(static_cast<int32_t>(part.colour_map->log2_size));
-    const f8 level = level_of_detail(depth * (p.along_x[3] - u * t.inverse_depth[0]),
-                                     depth * (p.along_x[4] - v * t.inverse_depth[0]),
-                                     depth * (p.along_y[3] - u * t.inverse_depth[1]),
-                                     depth * (p.along_y[4] - v * t.inverse_depth[1]), size, 0.0f);
+    const f8 ux = depth * (p.along_x[3] - u * t.inverse_depth[0]),
+             vx = depth * (p.along_x[4] - v * t.inverse_depth[0]),
+             uy = depth * (p.along_y[3] - u * t.inverse_depth[1]),
+             vy = depth * (p.along_y[4] - v * t.inverse_depth[1]);
+    const f8 level =
+        level_of_detail(to_right(steps, ux, uy), to_right(steps, vx, vy), downwards(steps, ux, uy),
+                        downwards(steps, vx, vy), size, 0.0f);
     const auto [near, far, share] = mip_taps(u, v, size, level);
     const uint32_t* texels = part.colour_map->texels;
     alignas(32) float found[4 * 8] = {};
@@ -74,20 +78,19 @@ Vec3x8 mirrored_light(const Light& light, const Part& part, Vec3x8 point, Vec3x8
     return mirrored_room(light, seen_from, point, direction, splat(part.roughness));
 }
 
-// Dims what lies behind eight pixels and adds what the glass mirrors and scatters.
+// Dims what lies behind eight pixels and adds what the glass mirrors and scatters. `at` and `row`
+// are their places, `ray` leads there in the world frame.
+template <class Row, class Steps>
 void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& p, int32_t x,
-           int32_t y, f8 inverse_depth, i8 wanted) {
+           int32_t y, f8 at, Row row, const Steps& steps, Vec3x8 ray, f8 inverse_depth, i8 wanted) {
     const Light& light = *s.light;
-    const f8 at = counting() + static_cast<float>(x);
-    const float row = static_cast<float>(y);
     const f8 depth = 1.0f / (wanted ? inverse_depth : splat(1.0f));
     auto attribute = [&](int k) {
         return (p.along_x[k] * at + (p.along_y[k] * row + p.at_0[k])) * depth;
     };
     const f8 u = attribute(3), v = attribute(4);
-    const Base8 base = base_colour(part, p, t, depth, u, v, wanted);
+    const Base8 base = base_colour(part, p, t, steps, depth, u, v, wanted);
     const Vec3x8 colour = base.colour * base.colour;
-    const Vec3x8 ray = ray_through(s.lens, s.world_from_camera, at, row);
     const Vec3x8 view = ray * -inverse_length(ray);
     const float (*n)[8] = s.frames[part.instance].normal_columns;
     Vec3x8 normal = vec3(n[0][0], n[0][1], n[0][2]) * attribute(0) +
@@ -131,6 +134,51 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     }
 }
 
+// Blends a triangle's pixels of a row; beyond the picture's right side are other pixels' numbers.
+void draw_row(const Shading& s, const Triangle& t, const Part& part, const Planes& planes,
+              const Projection& projection, int32_t y, const float* inverse_depth) {
+    const float least0 = least_inside(t.edge), least1 = least_inside(t.edge + 3),
+                least2 = least_inside(t.edge + 6);
+    const float row = static_cast<float>(y);
+    const float c0 = t.edge[1] * row + t.edge[2], c1 = t.edge[4] * row + t.edge[5],
+                c2 = t.edge[7] * row + t.edge[8],
+                cn = t.inverse_depth[1] * row + t.inverse_depth[2];
+    for (int32_t x = t.x0; x <= t.x1; x += 8) {
+        const f8 at = counting() + static_cast<float>(x);
+        const f8 n = t.inverse_depth[0] * at + cn;
+        const i8 drawn = (t.edge[0] * at + c0 >= least0) & (t.edge[3] * at + c1 >= least1) &
+                         (t.edge[6] * at + c2 >= least2) & (n > load(inverse_depth + x)) &
+                         (n <= projection.greatest_inverse_depth) &
+                         (at < static_cast<float>(projection.width));
+        if (!any(drawn)) continue;
+        const Vec3x8 ray = ray_through(s.lens, s.world_from_camera, at, row);
+        blend(s, t, part, planes, x, y, at, row, PixelSteps{}, ray, n, drawn);
+    }
+}
+
+// The same through a lens that bends lines; there is nothing beyond a row of its table.
+void draw_lens_row(const Shading& s, const Triangle& t, const Part& part, const Planes& planes,
+                   const Projection& projection, int32_t y, const float* inverse_depth) {
+    const float least0 = least_inside(t.edge), least1 = least_inside(t.edge + 3),
+                least2 = least_inside(t.edge + 6);
+    const LensTable& lens = *projection.table;
+    const int64_t first = y * lens.stride;
+    const auto function = [](const float* f, f8 x, f8 down) {
+        return f[0] * x + (f[1] * down + f[2]);
+    };
+    for (int32_t x = t.x0; x <= t.x1; x += 8) {
+        const f8 at = load(lens.x + first + x), down = load(lens.y + first + x);
+        const f8 n = function(t.inverse_depth, at, down);
+        const i8 drawn =
+            (function(t.edge, at, down) >= least0) & (function(t.edge + 3, at, down) >= least1) &
+            (function(t.edge + 6, at, down) >= least2) & (n > load(inverse_depth + x)) &
+            (n <= projection.greatest_inverse_depth) & lies_on(lens.face + first + x, t.face);
+        if (!any(drawn)) continue;
+        const Vec3x8 ray = ray_at(s.world_from_face[t.face], at, down);
+        blend(s, t, part, planes, x, y, at, down, steps_at(lens, y, x), ray, n, drawn);
+    }
+}
+
 }  // namespace
 
 void draw_glass_band(const Shading& s, const TriangleSet& glass, const DrawList& parts,
@@ -148,24 +196,11 @@ void draw_glass_band(const Shading& s, const TriangleSet& glass, const DrawList&
             const Planes planes = planes_of(t, part);
             const int32_t y0 = t.y0 > first_row ? t.y0 : first_row;
             const int32_t y1 = t.y1 < last_row ? t.y1 : last_row;
-            const float least0 = least_inside(t.edge), least1 = least_inside(t.edge + 3),
-                        least2 = least_inside(t.edge + 6);
             for (int32_t y = y0; y <= y1; y++) {
-                const float row = static_cast<float>(y);
-                const float c0 = t.edge[1] * row + t.edge[2], c1 = t.edge[4] * row + t.edge[5],
-                            c2 = t.edge[7] * row + t.edge[8],
-                            cn = t.inverse_depth[1] * row + t.inverse_depth[2];
-                for (int32_t x = t.x0; x <= t.x1; x += 8) {
-                    const f8 at = counting() + static_cast<float>(x);
-                    const f8 n = t.inverse_depth[0] * at + cn;
-                    // Beyond the picture's right side are other pixels' numbers.
-                    const i8 drawn = (t.edge[0] * at + c0 >= least0) &
-                                     (t.edge[3] * at + c1 >= least1) &
-                                     (t.edge[6] * at + c2 >= least2) &
-                                     (n > load(inverse_depth + y * s.stride + x)) &
-                                     (n <= projection.greatest_inverse_depth) &
-                                     (at < static_cast<float>(projection.width));
-                    if (any(drawn)) blend(s, t, part, planes, x, y, n, drawn);
+                if (projection.table != nullptr) {
+                    draw_lens_row(s, t, part, planes, projection, y, inverse_depth + y * s.stride);
+                } else {
+                    draw_row(s, t, part, planes, projection, y, inverse_depth + y * s.stride);
                 }
             }
         }

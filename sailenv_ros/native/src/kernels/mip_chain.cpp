@@ -51,5 +51,8 @@ SAILENV_KERNEL(structure_sizes)(int64_t* sizes) {
     sizes[3] = sizeof(sailenv::View);
     sizes[4] = sizeof(sailenv::Outputs);
     sizes[5] = sizeof(sailenv::LayerSum);
+    sizes[6] = sizeof(sailenv::LensTable);
+    sizes[7] = sizeof(sailenv::CubeFace);
+    sizes[8] = sizeof(sailenv::LensTile);
     return sailenv::STATUS_OK;
 }

@@ -6,6 +6,7 @@
 #include "../threads.h"
 #include "lanes.h"
 #include "lens.h"
+#include "lens_models/table.h"
 #include "record.h"
 #include "scratch.h"
 
@@ -20,6 +21,13 @@
     FIELD(const double*, displacements) /* (R, 3, 4), or null without scene flow */       \
     FIELD(const sailenv::Lens*, from_lens)                                                \
     FIELD(const sailenv::Lens*, to_lens)                                                  \
+    FIELD(int64_t, bent)                  /* 1: a lens is no pin-hole; the next count */  \
+    FIELD(const double*, from_rays)       /* (H, W, 3): unit rays, `depth` is along */    \
+                                          /* them; null through a pin-hole */             \
+    FIELD(int64_t, to_model)              /* of the other lens; below 0: a pin-hole */    \
+    FIELD(const double*, to_coefficients) /* (MOST_COEFFICIENTS,) */                      \
+    FIELD(double, to_limit)               /* [rad] */                                     \
+    FIELD(int64_t, same_lens)                                                             \
     FIELD(int64_t, to_height)                                                             \
     FIELD(int64_t, to_width)                                                              \
     FIELD(const float*, to_depth)       /* (H', W') [m], or null: nothing is seen */      \
@@ -35,16 +43,17 @@
 
 SAILENV_RECORD(Motion, motion, MOTION_FIELDS)
 
-#define TRANSFORM_FIELDS(FIELD)             \
-    FIELD(int64_t, height)                  \
-    FIELD(int64_t, width)                   \
-    FIELD(const float*, depth)              \
-    FIELD(const uint16_t*, instance)        \
-    FIELD(const uint16_t*, row_of_instance) \
-    FIELD(int64_t, rows)                    \
-    FIELD(const double*, transforms)        \
-    FIELD(const sailenv::Lens*, lens)       \
-    FIELD(float*, points) /* (H, W, 3) */
+#define TRANSFORM_FIELDS(FIELD)                               \
+    FIELD(int64_t, height)                                    \
+    FIELD(int64_t, width)                                     \
+    FIELD(const float*, depth)                                \
+    FIELD(const uint16_t*, instance)                          \
+    FIELD(const uint16_t*, row_of_instance)                   \
+    FIELD(int64_t, rows)                                      \
+    FIELD(const double*, transforms)                          \
+    FIELD(const sailenv::Lens*, lens)                         \
+    FIELD(const double*, rays) /* as `from_rays` of Motion */ \
+    FIELD(float*, points)      /* (H, W, 3) */
 
 SAILENV_RECORD(Transform, transform_points, TRANSFORM_FIELDS)
 
@@ -232,6 +241,152 @@ void move_chunk(const Motion& in, const double* columns, Wanted wanted, int64_t 
     if (wanted.place) look_up(in, places, v, u, count);
 }
 
+// A vector times rows of three numbers, and with a fourth one times `shift`.
+void transformed(const double* rows, const double* point, double shift, double* out) {
+    for (int k = 0; k < 3; k++) {
+        const double* r = rows + 4 * k;
+        out[k] = r[0] * point[0] + r[1] * point[1] + r[2] * point[2] + shift * r[3];
+    }
+}
+
+// The ray of a pixel whose depth is along it.
+void ray_of(const sailenv::Lens& lens, const double* rays, int64_t at, int64_t u, int64_t v,
+            double* ray) {
+    if (rays != nullptr) {
+        for (int k = 0; k < 3; k++) ray[k] = rays[3 * at + k];
+    } else {
+        ray[0] = sailenv::ray_x(lens, static_cast<double>(u));
+        ray[1] = sailenv::ray_y(lens, static_cast<double>(v));
+        ray[2] = 1.0;
+    }
+}
+
+// Where a chunk's points are in the other camera's frame; there is room for steps of eight.
+struct MovedPoints {
+    double ray[3][CHUNK + 8], at[3][CHUNK + 8], step[3][CHUNK + 8];
+    double reach[CHUNK + 8], shift[CHUNK + 8];  // see `Affine`
+};
+
+// Moves the points of neighbours that move alike; steps of eight as in `move_run`.
+void move_points(const double* rows, int64_t first, int64_t end, MovedPoints& p) {
+    for (int64_t k = first; k < end; k += 8) {
+        const d8 reach = vector_of(p.reach + k), shift = vector_of(p.shift + k);
+        const d8 x = reach * vector_of(p.ray[0] + k), y = reach * vector_of(p.ray[1] + k),
+                 z = reach * vector_of(p.ray[2] + k);
+        const d8 own[3] = {x, y, z};
+        for (int axis = 0; axis < 3; axis++) {
+            const double* r = rows + 4 * axis;
+            const d8 step = r[0] * x + r[1] * y + r[2] * z + shift * r[3];
+            put(p.step[axis] + k, step);
+            put(p.at[axis] + k, own[axis] + step);
+        }
+    }
+}
+
+// The same as `move_run` where one of the lenses is no pin-hole. `project(point, place)` tells
+// where the other lens has a point, as a place for x and y of `Lens`; false if it does not see it.
+template <class Project>
+void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int64_t count,
+                     const Project& project) {
+    const int64_t at = v * in.width + u;
+    const uint16_t* ids = in.instance + at;
+    const sailenv::Lens& to = *in.to_lens;
+    const double rate = 1.0 / in.duration;
+    MovedPoints p;
+    Places places;
+    for (int64_t k = 0; k < count; k++) {
+        const double z = in.depth[at + k];
+        double ray[3];
+        ray_of(*in.from_lens, in.from_rays, at + k, u + k, v, ray);
+        for (int axis = 0; axis < 3; axis++) p.ray[axis][k] = ray[axis];
+        p.reach[k] = z == INFINITE ? 1.0 : z;
+        p.shift[k] = z == INFINITE ? 0.0 : 1.0;
+    }
+    for (int64_t k = count; k < count + 8; k++) {
+        for (int axis = 0; axis < 3; axis++) p.ray[axis][k] = 0.0;
+        p.reach[k] = p.shift[k] = 0.0;
+    }
+    for (int64_t first = 0; first < count;) {
+        int64_t end = first + 1;
+        while (end < count && ids[end] == ids[first]) end++;
+        const uint16_t asked = in.row_of_instance[ids[first]];
+        const int64_t row = asked < in.rows ? asked : 0;
+        move_points(in.motions + 12 * row, first, end, p);
+        const bool has_motion = row != 0;
+        for (int64_t k = first; k < end; k++) {
+            const bool known = has_motion && p.reach[k] == p.reach[k] && p.ray[2][k] == p.ray[2][k];
+            const bool rests = in.same_lens != 0 && p.step[0][k] == 0.0 && p.step[1][k] == 0.0 &&
+                               p.step[2][k] == 0.0;
+            const double moved[3] = {p.at[0][k], p.at[1][k], p.at[2][k]};
+            double place[2] = {0.0, 0.0};
+            const bool valid = known && (rests || project(moved, place));
+            places.known[k] = known;
+            places.valid[k] = valid;
+            places.u[k] = places.v[k] = 0.0;
+            if (!valid || rests) continue;
+            places.u[k] = sailenv::pixel_u(to, place[0]) - static_cast<double>(u + k);
+            places.v[k] = sailenv::pixel_v(to, place[1]) - static_cast<double>(v);
+        }
+        if (wanted.scene) {
+            for (int64_t k = first; k < end; k++) {
+                double point[3], step[3];
+                for (int axis = 0; axis < 3; axis++) point[axis] = p.reach[k] * p.ray[axis][k];
+                transformed(in.displacements + 12 * row, point, 1.0, step);
+                const bool there = places.known[k] && p.shift[k] != 0.0;
+                for (int j = 0; j < 3; j++) {
+                    in.scene_flow[3 * (at + k) + j] =
+                        there ? static_cast<float>(step[j]) : NOT_A_NUMBER;
+                }
+            }
+        }
+        first = end;
+    }
+    if (wanted.flow) {
+        for (int64_t k = 0; k < count; k++) {
+            const bool valid = places.valid[k] != 0;
+            float* flow = in.flow + 2 * (at + k);
+            flow[0] = valid ? static_cast<float>(rate * places.u[k]) : NOT_A_NUMBER;
+            flow[1] = valid ? static_cast<float>(rate * places.v[k]) : NOT_A_NUMBER;
+        }
+    }
+    if (in.valid != nullptr) memcpy(in.valid + at, places.valid, static_cast<size_t>(count));
+    if (!wanted.place) return;
+    for (int64_t k = 0; k < count; k++) {
+        const double x = p.at[0][k], y = p.at[1][k], z = p.at[2][k];
+        const double reach = in.to_model < 0 ? z : std::sqrt(x * x + y * y + z * z);
+        places.z_to[k] = p.shift[k] == 0.0 ? INFINITE : reach;
+    }
+    look_up(in, places, v, u, count);
+}
+
+int32_t move_through_bent_lenses(int64_t threads, const Motion& in, Wanted wanted) {
+    const auto move = [&](const auto& project) {
+        sailenv::parallel_for(
+            threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
+                for (int64_t v = begin; v < end; v++) {
+                    for (int64_t u = 0; u < in.width; u += CHUNK) {
+                        move_bent_chunk(in, wanted, v, u,
+                                        u + CHUNK < in.width ? CHUNK : in.width - u, project);
+                    }
+                }
+            });
+    };
+    if (in.to_model < 0) {
+        move([](const double* point, double* place) {
+            place[0] = point[0] / point[2];
+            place[1] = point[1] / point[2];
+            return point[2] > 0.0;
+        });
+        return sailenv::STATUS_OK;
+    }
+    if (in.to_coefficients == nullptr) return sailenv::STATUS_INVALID_ARGUMENT;
+    const sailenv::LensLaw law = sailenv::lens_law(in.to_model, in.to_coefficients, in.to_limit);
+    const bool is_model = sailenv::LensModels::choose(in.to_model, [&](auto model) {
+        move([&](const double* point, double* place) { return model.project(law, point, place); });
+    });
+    return is_model ? sailenv::STATUS_OK : sailenv::STATUS_INVALID_ARGUMENT;
+}
+
 }  // namespace
 
 SAILENV_KERNEL(motion)(int64_t threads, const Motion* given) {
@@ -241,13 +396,14 @@ SAILENV_KERNEL(motion)(int64_t threads, const Motion* given) {
         return sailenv::STATUS_INVALID_ARGUMENT;
     }
     if (in.to_depth == nullptr) in.to_height = in.to_width = 0;
+    const bool looks = in.occluded != nullptr || in.out_of_view != nullptr || in.hidden != nullptr;
+    const Wanted wanted{in.flow != nullptr, in.scene_flow != nullptr, looks};
+    if (in.bent != 0) return move_through_bent_lenses(threads, in, wanted);
     const auto columns = sailenv::allocate<double>(in.width + 8);
     if (!columns) return sailenv::STATUS_OUT_OF_MEMORY;
     for (int64_t u = 0; u < in.width + 8; u++) {
         columns[u] = sailenv::ray_x(*in.from_lens, static_cast<double>(static_cast<int32_t>(u)));
     }
-    const bool looks = in.occluded != nullptr || in.out_of_view != nullptr || in.hidden != nullptr;
-    const Wanted wanted{in.flow != nullptr, in.scene_flow != nullptr, looks};
     sailenv::parallel_for(threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
         for (int64_t v = begin; v < end; v++) {
             for (int64_t u = 0; u < in.width; u += CHUNK) {
@@ -265,17 +421,17 @@ SAILENV_KERNEL(transform_points)(int64_t threads, const Transform* given) {
     if (in.height < 0 || in.width < 0 || in.rows < 1) return sailenv::STATUS_INVALID_ARGUMENT;
     sailenv::parallel_for(threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
         for (int64_t v = begin; v < end; v++) {
-            const double y = sailenv::ray_y(*in.lens, static_cast<double>(v));
             for (int64_t u = 0; u < in.width; u++) {
                 const int64_t at = v * in.width + u;
                 const double z = in.depth[at];
                 const uint16_t asked = in.row_of_instance[in.instance[at]];
                 const uint16_t row = asked < in.rows ? asked : uint16_t{0};
                 const bool there = row != 0 && z - z == 0.0;
-                const double x = sailenv::ray_x(*in.lens, static_cast<double>(u));
+                double ray[3];
+                ray_of(*in.lens, in.rays, at, u, v, ray);
                 for (int64_t axis = 0; axis < 3; axis++) {
                     const double* r = in.transforms + 12 * row + 4 * axis;
-                    const double place = z * (r[0] * x + r[1] * y + r[2]) + r[3];
+                    const double place = z * (r[0] * ray[0] + r[1] * ray[1] + r[2] * ray[2]) + r[3];
                     in.points[3 * at + axis] = there ? static_cast<float>(place) : NOT_A_NUMBER;
                 }
             }

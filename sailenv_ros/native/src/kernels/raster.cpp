@@ -6,7 +6,8 @@
 
 #include "../threads.h"
 #include "cluster_culling.h"
-#include "texture.h"
+#include "lens_raster.h"
+#include "mask_test.h"
 
 namespace sailenv {
 namespace {
@@ -29,6 +30,17 @@ void compose(const double* eye_from_world, const double* pose, const double* sca
     }
 }
 
+// The rows of a rotation times a transform.
+void turn_rows(const double* turn, const double* from_world, double* out) {
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            double sum = 0.0;
+            for (int k = 0; k < 3; k++) sum += turn[3 * i + k] * from_world[4 * k + j];
+            out[4 * i + j] = sum;
+        }
+    }
+}
+
 // Where a sample lies.
 double pixel_of(const Projection& p, int32_t sample) {
     return p.fine ? 0.5 * (sample - 1) : sample;
@@ -45,10 +57,46 @@ Projection clipped(const Projection& p, const Instances& instances) {
     return result;
 }
 
-void set_sides(InstanceFrame& frame, const Projection& p) {
+// Least and greatest x and y of samples on a face.
+struct FaceBounds {
+    double low[2], high[2];
+};
+
+// Of those of a rectangle, give or take a tile.
+FaceBounds bounds_within(const Projection& p, int32_t number) {
+    const LensTable& lens = *p.table;
+    const CubeFace& face = lens.faces[number];
+    FaceBounds found = {{1e9, 1e9}, {-1e9, -1e9}};
+    bool all = false, none = true;
+    for (int32_t y = p.y0 / LENS_TILE_ROWS; y <= p.y1 / LENS_TILE_ROWS; y++) {
+        for (int32_t x = p.x0 / LENS_TILE_COLUMNS; x <= p.x1 / LENS_TILE_COLUMNS; x++) {
+            const LensTile& tile = lens.tiles[y * lens.tile_columns + x];
+            if (!(tile.faces >> number & 1)) continue;
+            none = false;
+            // Of several faces a tile has no bounds.
+            all |= tile.faces != 1 << number;
+            for (int axis = 0; axis < 2; axis++) {
+                found.low[axis] = std::min<double>(found.low[axis], tile.low[axis]);
+                found.high[axis] = std::max<double>(found.high[axis], tile.high[axis]);
+            }
+        }
+    }
+    if (none) return {{1e9, 1e9}, {1e9, 1e9}};
+    if (all) return {{face.low[0], face.low[1]}, {face.high[0], face.high[1]}};
+    return found;
+}
+
+void set_sides(InstanceFrame& frame, const Projection& p, const FaceBounds* face) {
     const double* m = frame.eye_from_object;
     double wide[4];
-    if (p.perspective) {
+    if (face != nullptr) {
+        const double across = CULL_MARGIN * std::max(-face->low[0], face->high[0]);
+        const double down = CULL_MARGIN * std::max(-face->low[1], face->high[1]);
+        wide[0] = across - face->low[0];
+        wide[1] = across + face->high[0];
+        wide[2] = down - face->low[1];
+        wide[3] = down + face->high[1];
+    } else if (p.perspective) {
         // A hundredth of the farther side's width beyond what is drawn.
         wide[0] = -ray_x(p.lens, pixel_of(p, p.x0) - 0.5);
         wide[1] = ray_x(p.lens, pixel_of(p, p.x1) + 0.5);
@@ -104,6 +152,7 @@ struct ClusterRows {
     alignas(32) float inverse_det[CLUSTER_TRIANGLES];
     alignas(32) float x0[CLUSTER_TRIANGLES], x1[CLUSTER_TRIANGLES];
     alignas(32) float y0[CLUSTER_TRIANGLES], y1[CLUSTER_TRIANGLES];
+    const CornerPlace* place[3][CLUSTER_TRIANGLES];  // where the lens has a table
     int32_t back[CLUSTER_TRIANGLES];
     int32_t vertex[3][CLUSTER_TRIANGLES];
 };
@@ -208,6 +257,21 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
     }
 }
 
+// The same through a lens that bends lines.
+void set_lens_bounds(ClusterRows& r, int32_t count, const Projection& p, const CubeFace& face) {
+    for (int32_t k = 0; k < count; k++) {
+        const CornerPlace* const places[3] = {r.place[0][k], r.place[1][k], r.place[2][k]};
+        float corners[3][3];
+        for (int j = 0; j < 9; j++) corners[j / 3][j % 3] = r.corner[j][k];
+        SampleBox reach = {1, 1, 0, 0};
+        if (!reach_through_lens(face, places, corners, reach)) reach = {1, 1, 0, 0};
+        r.x0[k] = static_cast<float>(std::max<int32_t>(reach.x0, p.x0));
+        r.x1[k] = static_cast<float>(std::min<int32_t>(reach.x1, p.x1));
+        r.y0[k] = static_cast<float>(std::max<int32_t>(reach.y0, p.y0));
+        r.y1[k] = static_cast<float>(std::min<int32_t>(reach.y1, p.y1));
+    }
+}
+
 // Fills up to the next multiple of eight with triangles that are nowhere.
 void pad(ClusterRows& r, int32_t count) {
     for (int32_t k = count; k < ((count + 7) & ~7); k++) {
@@ -251,8 +315,14 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
             r.vertex[j][k] = static_cast<int32_t>(vertices[3 * k + j]);
         }
     }
-    pad(r, count);
-    set_bounds<PERSPECTIVE>(r, (count + 7) & ~7, p);
+    if (p.table != nullptr) {
+        const CornerPlace* places = set.places.data() + corners_at;
+        for (int32_t k = 0; k < 3 * count; k++) r.place[k % 3][k / 3] = places + corners[k];
+        set_lens_bounds(r, count, p, p.table->faces[seen.face]);
+    } else {
+        pad(r, count);
+        set_bounds<PERSPECTIVE>(r, (count + 7) & ~7, p);
+    }
     const int32_t reaching = keep_reaching(r, count);
     pad(r, reaching);
     set_edges_up<PERSPECTIVE>(r, (reaching + 3) & ~3, p);
@@ -269,7 +339,8 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
         for (int j = 0; j < 3; j++) t.vertex[j] = r.vertex[j][k];
         t.inverse_det = r.inverse_det[k];
         t.part = seen.part;
-        t.back = static_cast<int16_t>(r.back[k]);
+        t.back = static_cast<int8_t>(r.back[k]);
+        t.face = static_cast<int8_t>(seen.face);
         t.masked = PERSPECTIVE && (part.flags & PART_MASKED) ? 1 : 0;
         t.x0 = static_cast<int16_t>(r.x0[k]);
         t.x1 = static_cast<int16_t>(r.x1[k]);
@@ -319,55 +390,6 @@ void sort_into_bands(Segment& segment, const Triangle* triangles, bool fine, int
     // Each start has moved to the next one's place.
     for (int32_t b = bands; b > 0; b--) starts[b] = starts[b - 1];
     starts[0] = 0;
-}
-
-// What alpha testing needs of a triangle: planes of uv over depth.
-struct MaskedTriangle {
-    float u[3], v[3];
-    const uint32_t* texels;
-    int32_t log2_size;
-};
-
-MaskedTriangle masked_triangle(const Triangle& t, const Part& part) {
-    MaskedTriangle m{};
-    const bool textured = part.colour_map != nullptr;
-    m.texels = textured ? part.colour_map->texels : WHITE_TEXELS;
-    m.log2_size = textured ? static_cast<int32_t>(part.colour_map->log2_size) : 0;
-    for (int k = 0; k < 3; k++) {
-        const float* vertex = part.vertices + 8 * static_cast<int64_t>(t.vertex[k]);
-        for (int j = 0; j < 3; j++) {
-            const float share = t.edge[3 * k + j] * t.inverse_det;
-            m.u[j] += vertex[3] * share;
-            m.v[j] += vertex[4] * share;
-        }
-    }
-    return m;
-}
-
-// Which of eight pixels of a masked material are there.
-i8 opaque_pixels(const Triangle& t, const MaskedTriangle& m, const Part& part, f8 x, float y,
-                 f8 inverse_depth, i8 wanted) {
-    const f8 depth = 1.0f / inverse_depth;
-    const f8 u = (m.u[0] * x + (m.u[1] * y + m.u[2])) * depth;
-    const f8 v = (m.v[0] * x + (m.v[1] * y + m.v[2])) * depth;
-    const i8 size = splat(m.log2_size);
-    const f8 level = level_of_detail(depth * (m.u[0] - u * t.inverse_depth[0]),
-                                     depth * (m.v[0] - v * t.inverse_depth[0]),
-                                     depth * (m.u[1] - u * t.inverse_depth[1]),
-                                     depth * (m.v[1] - v * t.inverse_depth[1]), size, 0.0f);
-    const auto [near, far, share] = mip_taps(u, v, size, level);
-    f8 alpha = splat(0.0f);
-    for (int k = 0; k < 8; k++) {
-        if (!wanted[k]) continue;
-        const float a =
-            sample_bytes(m.texels, near.upper[k], near.lower[k], near.across[k], near.down[k])[3];
-        const float b =
-            sample_bytes(m.texels, far.upper[k], far.lower[k], far.across[k], far.down[k])[3];
-        alpha[k] = (a + (b - a) * share[k]) * (1.0f / 255.0f);
-    }
-    const float least = smaller(part.alpha_cutoff, part.least_cutoff);
-    const f8 cutoff = max8(part.alpha_cutoff - part.cutoff_fall * level, splat(least));
-    return wanted & (alpha * part.colour[3] >= cutoff);
 }
 
 // Where a row of a wide triangle begins and ends, give or take a sample.
@@ -432,7 +454,7 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
                        (n <= p.greatest_inverse_depth);
             if (MASKED) {
                 if (!any(drawn)) continue;
-                drawn = opaque_pixels(t, masked, part, at, y, n, drawn);
+                drawn = opaque_pixels(t, masked, part, at, y, PixelSteps{}, n, drawn);
             }
             store(near_row + x, drawn ? n : before);
             if (seen_row != nullptr) {
@@ -449,6 +471,11 @@ Projection projection_of(const View& view) {
     Projection p{};
     p.perspective = true;
     p.lens = view.lens;
+    p.table = view.table;
+    if (p.table != nullptr) {
+        p.lens.fx = p.lens.fy = 1.0;
+        p.lens.cx = p.lens.cy = 0.0;
+    }
     p.width = static_cast<int32_t>(view.width);
     p.height = static_cast<int32_t>(view.height);
     p.x1 = p.width - 1;
@@ -461,18 +488,42 @@ Projection projection_of(const View& view) {
 
 void set_frames(Scratch& scratch, const Instances& instances, const double* eye_from_world,
                 const Projection& projection) {
-    scratch.frames.resize(static_cast<size_t>(instances.count));
-    for (int64_t k = 0; k < instances.count; k++) {
-        InstanceFrame& frame = scratch.frames[static_cast<size_t>(k)];
-        const double *pose = instances.world_from_body + 16 * k, *scale = instances.scales + 3 * k;
-        compose(eye_from_world, pose, scale, frame.eye_from_object);
-        set_sides(frame, k + 1 == instances.clipped ? clipped(projection, instances) : projection);
-        set_eye(frame);
-        // Normals go by the inverse transpose: the rotation with the reciprocal scale.
-        for (int j = 0; j < 3; j++) {
-            for (int i = 0; i < 8; i++) {
-                frame.normal_columns[j][i] =
-                    i < 3 ? static_cast<float>(pose[4 * i + j] / scale[j]) : 0.0f;
+    const int32_t faces = faces_of(projection);
+    scratch.frames.resize(static_cast<size_t>(faces * instances.count));
+    for (int32_t number = 0; number < faces; number++) {
+        const CubeFace* face =
+            projection.table == nullptr ? nullptr : projection.table->faces + number;
+        // The first face's frames hold what does not depend on the face.
+        if (face != nullptr && number > 0 && !is_used(*face)) continue;
+        double face_from_world[12];
+        if (face != nullptr) turn_rows(face->turn, eye_from_world, face_from_world);
+        const double* onto = face == nullptr ? eye_from_world : face_from_world;
+        FaceBounds bounds{}, clipped_bounds{};
+        if (face != nullptr) {
+            bounds = {{face->low[0], face->low[1]}, {face->high[0], face->high[1]}};
+            if (instances.clipped != 0) {
+                clipped_bounds = bounds_within(clipped(projection, instances), number);
+            }
+        }
+        for (int64_t k = 0; k < instances.count; k++) {
+            InstanceFrame& frame =
+                scratch.frames[static_cast<size_t>(number * instances.count + k)];
+            const double *pose = instances.world_from_body + 16 * k,
+                         *scale = instances.scales + 3 * k;
+            compose(onto, pose, scale, frame.eye_from_object);
+            const bool is_clipped = k + 1 == instances.clipped;
+            if (face == nullptr) {
+                set_sides(frame, is_clipped ? clipped(projection, instances) : projection, nullptr);
+            } else {
+                set_sides(frame, projection, is_clipped ? &clipped_bounds : &bounds);
+            }
+            set_eye(frame);
+            // Normals go by the inverse transpose: the rotation with the reciprocal scale.
+            for (int j = 0; j < 3; j++) {
+                for (int i = 0; i < 8; i++) {
+                    frame.normal_columns[j][i] =
+                        i < 3 ? static_cast<float>(pose[4 * i + j] / scale[j]) : 0.0f;
+                }
             }
         }
     }
@@ -483,7 +534,7 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
                     int64_t order_count, bool back_first, TriangleSet& set) {
     set.seen.clear();
     set.parts_seen.clear();
-    set.corners_at.assign(static_cast<size_t>(parts.count), -1);
+    set.corners_at.assign(static_cast<size_t>(faces_of(projection) * parts.count), -1);
     const Projection part_of_it = clipped(projection, instances);
     const bool nowhere = part_of_it.x0 > part_of_it.x1 || part_of_it.y0 > part_of_it.y1;
     int64_t corners = 0, most_triangles = 0;
@@ -499,35 +550,40 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
         segment.triangle_count = 0;
     };
     int64_t first_cluster = 0, first_triangle = 0;
-    for (int64_t place = 0; place < order_count; place++) {
-        const int32_t number = order == nullptr ? static_cast<int32_t>(place) : order[place];
-        const Part& part = parts.parts[number];
-        if (instances.drawn != nullptr && !instances.drawn[part.instance]) continue;
-        if (part.instance + 1 == instances.clipped && nowhere) continue;
-        const InstanceFrame& frame = scratch.frames[static_cast<size_t>(part.instance)];
-        const double centre[3] = {part.sphere[0], part.sphere[1], part.sphere[2]};
-        if (is_beyond(centre, part.sphere[3], frame.sides)) continue;
-        const bool two_sided = !projection.perspective || (part.flags & PART_DOUBLE_SIDED);
-        const int passes = back_first && two_sided ? 2 : 1;
-        for (int pass = 0; pass < passes; pass++) {
-            const Facing facing = passes == 1 ? FACING_BOTH
-                                  : pass == 0 ? FACING_BACK
-                                              : FACING_FRONT;
-            for (int32_t c = 0; c < part.cluster_count; c++) {
-                const Cluster& cluster = part.clusters[c];
-                if (is_beyond(cluster.centre, cluster.radius, frame.sides)) continue;
-                if (!two_sided && faces_away(cluster, frame.eye)) continue;
-                set.seen.push_back({number, c, facing});
-                most_triangles += cluster.index_count / 3;
-                if (static_cast<int64_t>(set.seen.size()) - first_cluster == SEGMENT_CLUSTERS) {
-                    end_segment(first_cluster, first_triangle);
-                    first_cluster = static_cast<int64_t>(set.seen.size());
-                    first_triangle = most_triangles;
-                }
-                if (set.corners_at[static_cast<size_t>(number)] < 0) {
-                    set.corners_at[static_cast<size_t>(number)] = corners;
-                    set.parts_seen.push_back(number);
-                    corners += (part.corner_count + 7) & ~7;
+    for (int32_t face = 0; face < faces_of(projection); face++) {
+        if (projection.table != nullptr && !is_used(projection.table->faces[face])) continue;
+        const InstanceFrame* frames = scratch.frames.data() + face * instances.count;
+        for (int64_t place = 0; place < order_count; place++) {
+            const int32_t number = order == nullptr ? static_cast<int32_t>(place) : order[place];
+            const Part& part = parts.parts[number];
+            if (instances.drawn != nullptr && !instances.drawn[part.instance]) continue;
+            if (part.instance + 1 == instances.clipped && nowhere) continue;
+            const InstanceFrame& frame = frames[part.instance];
+            const double centre[3] = {part.sphere[0], part.sphere[1], part.sphere[2]};
+            if (is_beyond(centre, part.sphere[3], frame.sides)) continue;
+            const bool two_sided = !projection.perspective || (part.flags & PART_DOUBLE_SIDED);
+            const int passes = back_first && two_sided ? 2 : 1;
+            for (int pass = 0; pass < passes; pass++) {
+                const Facing facing = passes == 1 ? FACING_BOTH
+                                      : pass == 0 ? FACING_BACK
+                                                  : FACING_FRONT;
+                for (int32_t c = 0; c < part.cluster_count; c++) {
+                    const Cluster& cluster = part.clusters[c];
+                    if (is_beyond(cluster.centre, cluster.radius, frame.sides)) continue;
+                    if (!two_sided && faces_away(cluster, frame.eye)) continue;
+                    set.seen.push_back({number, c, facing, face});
+                    most_triangles += cluster.index_count / 3;
+                    if (static_cast<int64_t>(set.seen.size()) - first_cluster == SEGMENT_CLUSTERS) {
+                        end_segment(first_cluster, first_triangle);
+                        first_cluster = static_cast<int64_t>(set.seen.size());
+                        first_triangle = most_triangles;
+                    }
+                    int64_t& at = set.corners_at[static_cast<size_t>(face * parts.count + number)];
+                    if (at < 0) {
+                        at = corners;
+                        set.parts_seen.push_back(face * parts.count + number);
+                        corners += (part.corner_count + 7) & ~7;
+                    }
                 }
             }
         }
@@ -539,6 +595,9 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
         set.y.resize(static_cast<size_t>(corners));
         set.z.resize(static_cast<size_t>(corners));
     }
+    if (projection.table != nullptr && set.places.size() < static_cast<size_t>(corners)) {
+        set.places.resize(static_cast<size_t>(corners));
+    }
     if (set.triangles.size() < static_cast<size_t>(most_triangles)) {
         set.triangles.resize(static_cast<size_t>(most_triangles));
     }
@@ -547,12 +606,18 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
     }
     parallel_for(threads, static_cast<int64_t>(set.parts_seen.size()), 1,
                  [&](int64_t first, int64_t, int64_t) {
-                     const int32_t number = set.parts_seen[static_cast<size_t>(first)];
-                     const Part& part = parts.parts[number];
-                     const int64_t at = set.corners_at[static_cast<size_t>(number)];
+                     const int64_t place = set.parts_seen[static_cast<size_t>(first)];
+                     const int64_t face = place / parts.count;
+                     const Part& part = parts.parts[place % parts.count];
+                     const int64_t at = set.corners_at[static_cast<size_t>(place)];
+                     const int64_t frame = face * instances.count + part.instance;
+                     float *x = set.x.data() + at, *y = set.y.data() + at, *z = set.z.data() + at;
                      transform_corners(
-                         part, scratch.frames[static_cast<size_t>(part.instance)].eye_from_object,
-                         set.x.data() + at, set.y.data() + at, set.z.data() + at);
+                         part, scratch.frames[static_cast<size_t>(frame)].eye_from_object, x, y, z);
+                     if (projection.table != nullptr) {
+                         place_corners(projection.table->faces[face], x, y, z, part.corner_count,
+                                       set.places.data() + at);
+                     }
                  });
     const int32_t band_rows = scratch.band_rows;
     const int32_t bands = (projection.height + band_rows - 1) / band_rows;
@@ -562,7 +627,8 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
         for (int64_t k = segment.first_cluster; k < segment.last_cluster; k++) {
             const SeenCluster& seen = set.seen[static_cast<size_t>(k)];
             const Part& part = parts.parts[seen.part];
-            const int64_t at = set.corners_at[static_cast<size_t>(seen.part)];
+            const int64_t at =
+                set.corners_at[static_cast<size_t>(seen.face * parts.count + seen.part)];
             const int64_t number = segment.first_triangle + segment.triangle_count;
             Triangle* next = set.triangles.data() + number;
             const Projection& onto =
@@ -598,8 +664,13 @@ void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& 
     const RowRange rows = rows_of_band(projection, band, band_rows);
     const int64_t before = rows.first * stride;
     uint32_t* seen = visible == nullptr ? nullptr : visible - before;
-    const auto plain = projection.fine ? draw_triangle<false, true> : draw_triangle<false, false>;
-    const auto masked = projection.fine ? draw_triangle<true, true> : draw_triangle<true, false>;
+    const bool bends = projection.table != nullptr;
+    const auto plain = bends             ? draw_through_lens
+                       : projection.fine ? draw_triangle<false, true>
+                                         : draw_triangle<false, false>;
+    const auto masked = bends             ? draw_through_lens
+                        : projection.fine ? draw_triangle<true, true>
+                                          : draw_triangle<true, false>;
     for (int64_t s = 0; s < set.segment_count; s++) {
         const Segment& segment = set.segments[static_cast<size_t>(s)];
         const uint32_t begin = segment.starts[static_cast<size_t>(band)];
@@ -629,7 +700,9 @@ void draw_window(const TriangleSet& set, const DrawList& parts, const Projection
             const int64_t number = segment.first_triangle + k;
             const Triangle& t = set.triangles[static_cast<size_t>(number)];
             const Part& part = parts.parts[t.part];
-            const auto draw = t.masked ? draw_triangle<true, false> : draw_triangle<false, false>;
+            const auto draw = projection.table != nullptr ? draw_through_lens
+                              : t.masked                  ? draw_triangle<true, false>
+                                                          : draw_triangle<false, false>;
             draw(t, static_cast<uint32_t>(number), part, projection, projection.y0, projection.y1,
                  stride, nullptr, origin);
         }

@@ -7,6 +7,7 @@
 
 #include "lanes.h"
 #include "lens.h"
+#include "lens_table.h"
 #include "render_types.h"
 
 namespace sailenv {
@@ -22,7 +23,8 @@ struct Triangle {
     float inverse_det;
     int32_t vertex[3];
     int32_t part;
-    int16_t back;    // 1: its back is seen
+    int8_t back;     // 1: its back is seen
+    int8_t face;     // of the cube, where the lens has a table; else 0
     int16_t masked;  // 1: its texture has holes
     int16_t x0, x1, y0, y1;
 };
@@ -47,11 +49,12 @@ struct InstanceFrame {
     alignas(32) float normal_columns[3][8];  // world normal from object normal; beyond are 0
 };
 
-// Onto the picture's pixels. Triangles have straight edges there: the rasteriser draws through no
-// lens that bends lines.
+// Onto the picture's pixels, in which triangles have straight edges; or onto the faces of a cube,
+// in which they have, for a lens that bends lines.
 struct Projection {
     bool perspective;
-    Lens lens;               // 1, 1, 0, 0 in a shadow map
+    Lens lens;               // 1, 1, 0, 0 in a shadow map and on a face
+    const LensTable* table;  // of a lens that bends lines; else null
     int32_t width, height;   // pixels
     int32_t x0, y0, x1, y1;  // first and last samples that are drawn; may lie beside the picture
     // Samples are the centres of pixels. Fine ones are half a pixel apart: sample k lies at pixel
@@ -67,6 +70,12 @@ enum Facing : int32_t { FACING_BOTH = 0, FACING_FRONT = 1, FACING_BACK = 2 };
 struct SeenCluster {
     int32_t part, cluster;
     Facing facing;
+    int32_t face;
+};
+
+// Where a corner lies on a face and in the picture; see lens_raster.h.
+struct CornerPlace {
+    float x, y, u, v, bend, wide_bend;
 };
 
 // Some of the triangles, in their order, and which of them reach into which band.
@@ -81,15 +90,17 @@ struct TriangleSet {
     std::vector<Segment> segments;
     int64_t segment_count = 0;
     std::vector<Triangle> triangles;
-    std::vector<int32_t> part_of;     // of each triangle, where samples are fine
-    std::vector<int64_t> corners_at;  // of each part in x, y, z; -1 where it is not seen
-    std::vector<int32_t> parts_seen;
-    std::vector<float> x, y, z;  // corners as the eye has them
+    std::vector<int32_t> part_of;  // of each triangle, where samples are fine
+    // Of each part, face after face, in x, y, z; -1 where it is not seen.
+    std::vector<int64_t> corners_at;
+    std::vector<int64_t> parts_seen;  // numbers in `corners_at`
+    std::vector<float> x, y, z;       // corners as the eye has them
+    std::vector<CornerPlace> places;  // where the lens has a table
 };
 
 // Memory that is used again from frame to frame.
 struct Scratch {
-    std::vector<InstanceFrame> frames;
+    std::vector<InstanceFrame> frames;  // face after face
     TriangleSet opaque, glass;
     std::vector<uint32_t> visible;  // number of the triangle that each pixel sees
     std::vector<float> inverse_depth;
@@ -114,6 +125,9 @@ struct RowRange {
     int32_t first, last;
 };
 RowRange rows_of_band(const Projection& projection, int32_t band, int32_t band_rows);
+
+// A table's triangles lie on several faces.
+inline int32_t faces_of(const Projection& p) { return p.table == nullptr ? 1 : CUBE_FACES; }
 
 // Draws one band: `visible` (may be null) and `inverse_depth` begin at the band's first sample.
 void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,

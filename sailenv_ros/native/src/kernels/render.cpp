@@ -44,14 +44,18 @@ void reserve_samples(std::vector<EdgeScratch>& edges, int64_t threads, int64_t w
 }
 
 // Numbers of the parts, the most distant first: by the middle of their spheres.
-void sort_glass(Scratch& scratch, const DrawList& glass) {
+void sort_glass(Scratch& scratch, const DrawList& glass, bool bends) {
     scratch.order.resize(static_cast<size_t>(glass.count));
     scratch.distance.resize(static_cast<size_t>(glass.count));
     for (int64_t k = 0; k < glass.count; k++) {
         const Part& part = glass.parts[k];
         const double* m = scratch.frames[static_cast<size_t>(part.instance)].eye_from_object;
-        const double depth =
-            m[8] * part.sphere[0] + m[9] * part.sphere[1] + m[10] * part.sphere[2] + m[11];
+        const auto along = [&](int row) {
+            const double* r = m + 4 * row;
+            return r[0] * part.sphere[0] + r[1] * part.sphere[1] + r[2] * part.sphere[2] + r[3];
+        };
+        // Along the axis; through a lens that may see to all sides, from the eye.
+        const double depth = bends ? std::hypot(along(0), along(1), along(2)) : along(2);
         scratch.distance[static_cast<size_t>(k)] = depth == depth ? depth : 0.0;
         scratch.order[static_cast<size_t>(k)] = static_cast<int32_t>(k);
     }
@@ -86,6 +90,25 @@ Mat3 turn_of(const double* m) {
     return {{row(0), row(1), row(2)}};
 }
 
+// The frames of a lens's faces.
+void set_face_turns(Shading& shading, const View& view) {
+    for (int32_t k = 0; k < CUBE_FACES; k++) {
+        const double* turn = view.table->faces[k].turn;
+        double from_face[12] = {}, world[12] = {};
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++) {
+                from_face[4 * i + j] = turn[3 * j + i];
+                for (int m = 0; m < 3; m++) {
+                    world[4 * i + j] += view.world_from_camera[4 * i + m] * turn[3 * j + m];
+                }
+            }
+        }
+        shading.world_from_face[k] = turn_of(world);
+        shading.camera_from_face[k] = turn_of(from_face);
+    }
+    shading.lens = FastLens(Lens{1.0, 1.0, 0.0, 0.0, view.lens.near_m, view.lens.far_m});
+}
+
 void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
                   const Instances& instances, const DrawList& parts, const DrawList& glass,
                   const Light* light, const Outputs& outputs) {
@@ -95,6 +118,7 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
     Projection sampled = projection;
     if (smoothed) {
         sampled.fine = true;
+        sampled.table = view.fine_table;
         sampled.x1 = 2 * projection.width;
         sampled.y1 = 2 * projection.height;
     }
@@ -106,7 +130,7 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
                    scratch.opaque);
     const bool glazed = shaded && glass.count > 0;
     if (glazed) {
-        sort_glass(scratch, glass);
+        sort_glass(scratch, glass, view.table != nullptr);
         make_triangles(threads, scratch, glass, instances, projection, scratch.order.data(),
                        glass.count, true, scratch.glass);
     }
@@ -123,6 +147,9 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
     shading.lens = FastLens(view.lens);
     shading.world_from_camera = turn_of(view.world_from_camera);
     shading.camera_from_world = turn_of(view.camera_from_world);
+    shading.table = view.table;
+    shading.fine_table = view.fine_table;
+    if (view.table != nullptr) set_face_turns(shading, view);
     const double* m = view.world_from_camera;
     shading.eye =
         vec3(static_cast<float>(m[3]), static_cast<float>(m[7]), static_cast<float>(m[11]));
@@ -175,7 +202,9 @@ SAILENV_KERNEL(draw_picture)
     using namespace sailenv;
     const bool sized =
         view->width > 0 && view->height > 0 && view->width <= 16384 && view->height <= 16384;
-    if (!sized || (outputs->radiance != nullptr && light == nullptr)) {
+    const bool lacks_samples = view->table != nullptr && view->fine_table == nullptr &&
+                               view->smooth_edges != 0 && outputs->radiance != nullptr;
+    if (!sized || lacks_samples || (outputs->radiance != nullptr && light == nullptr)) {
         return STATUS_INVALID_ARGUMENT;
     }
     try {

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "lens.h"
+#include "lens_table.h"
 #include "light_law.h"
 
 namespace sailenv {
@@ -137,6 +138,9 @@ struct View {
     Lens lens;
     int64_t width, height;
     int64_t smooth_edges;  // 1: edges of surfaces are smoothed, see kernels/edges.cpp
+    // Of a lens that bends straight lines: of the pixels' centres, and of samples half a pixel
+    // apart where edges are smoothed. Else null.
+    const LensTable *table, *fine_table;
 };
 
 constexpr int64_t MOST_ATTRIBUTES = 8;

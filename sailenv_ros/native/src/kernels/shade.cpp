@@ -11,7 +11,9 @@ namespace {
 
 void set_rays(const Shading& s, Chunk& c) {
     for (int32_t i = 0; i < c.padded; i += 8) {
-        c.ray.set(i, ray_through(s.lens, s.world_from_camera, load(c.at_x + i), load(c.at_y + i)));
+        const f8 x = load(c.at_x + i), y = load(c.at_y + i);
+        c.ray.set(i, s.table == nullptr ? ray_through(s.lens, s.world_from_camera, x, y)
+                                        : rays_of_faces(s, x, y, load(c.face + i)));
         const Vec3x8 normal = c.normal.at(i);
         c.normal.set(i, normal * inverse_length(normal));
     }
@@ -23,7 +25,8 @@ void write_gathered_surface(const Shading& s, const Chunk& c) {
     alignas(32) float pairs[2 * CHUNK];
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 id = to_float(load(c.id + i));
-        const f8 depth = load(c.empty + i) ? splat(__builtin_inff()) : load(c.depth + i);
+        f8 depth = load(c.empty + i) ? splat(__builtin_inff()) : load(c.depth + i);
+        if (s.table != nullptr) depth = depth * stretch(load(c.at_x + i), load(c.at_y + i));
         store(pairs + 2 * i, SHUFFLE(depth, id, 0, 8, 1, 9, 2, 10, 3, 11));
         store(pairs + 2 * i + 8, SHUFFLE(depth, id, 4, 12, 5, 13, 6, 14, 7, 15));
     }
@@ -101,7 +104,12 @@ void write_radiance(const Shading& s, const Chunk& c, uint16_t* radiance) {
         f8 share = load(c.from_around + i) / max8(luminance(sum), splat(1e-6f));
         const i8 empty = load(c.empty + i);
         if (c.missed && any(empty)) {
-            sum = where(empty, background(light, c.ray.at(i)), sum);
+            Vec3x8 beyond = background(light, c.ray.at(i));
+            if (s.table != nullptr) {
+                // Beyond what the lens sees it is dark.
+                beyond = where(load(c.face + i) == NO_FACE, splat(vec3(0.0f, 0.0f, 0.0f)), beyond);
+            }
+            sum = where(empty, beyond, sum);
             share = empty ? splat(0.0f) : share;
         }
         // Half precision ends at 65504.
@@ -121,7 +129,11 @@ void shade_chunk(const Shading& s, Chunk& c) {
         if (wanted.surface != nullptr) write_surface(s, c.x, c.y, c.count);
         return;
     }
-    gather(s, c);
+    if (s.table == nullptr) {
+        gather(s, c);
+    } else {
+        gather_through_lens(s, c);
+    }
     if (wanted.surface != nullptr) write_gathered_surface(s, c);
     set_rays(s, c);
     write_attributes(s, c);
@@ -131,6 +143,17 @@ void shade_chunk(const Shading& s, Chunk& c) {
 }
 
 }  // namespace
+
+Vec3x8 rays_of_faces(const Shading& s, f8 x, f8 y, i8 faces) {
+    const int32_t first = faces[0];
+    if (first != NO_FACE && !any(faces != first)) return ray_at(s.world_from_face[first], x, y);
+    Vec3x8 rays = splat(vec3(0.0f, 0.0f, 0.0f));
+    for (int32_t face = 0; face < CUBE_FACES; face++) {
+        const i8 here = faces == face;
+        if (any(here)) rays = where(here, ray_at(s.world_from_face[face], x, y), rays);
+    }
+    return rays;
+}
 
 void shade_band(const Shading& s, int32_t first_row, int32_t last_row) {
     Chunk chunk;

@@ -18,7 +18,9 @@ struct Shading {
     const Outputs* outputs;
     int64_t width, stride;
     const uint32_t* visible;
-    FastLens lens;
+    FastLens lens;                        // 1, 1, 0, 0 where there is a table
+    const LensTable *table, *fine_table;  // null through a lens that leaves lines straight
+    Mat3 world_from_face[CUBE_FACES], camera_from_face[CUBE_FACES];  // where there is a table
     Mat3 world_from_camera, camera_from_world;
     vec3 eye;
 };
@@ -42,10 +44,11 @@ void shade_band(const Shading& shading, int32_t first_row, int32_t last_row);
 
 // What some samples of a pixel see besides what its centre sees.
 struct Fragment {
-    float x, y;    // where one of the samples lies [pixels]
+    float x, y;    // where one of the samples lies [pixels]; on a face where there is a table
     float weight;  // the samples' share of the pixel
     uint32_t tag;  // number of the triangle, or NOTHING
     int32_t pixel_x, pixel_y;
+    int32_t face;
 };
 
 // Shades some points of surfaces: exposed radiance and the share of it that came from around, four

@@ -24,8 +24,11 @@ struct Vectors {
 
 struct Chunk {
     int32_t x, y, count, padded;                 // of a row; `x` and `y` not of fragments
-    alignas(32) float at_x[CHUNK], at_y[CHUNK];  // [pixels]
-    bool hit, missed, coloured, detailed;        // what there is among the pixels
+    alignas(32) float at_x[CHUNK], at_y[CHUNK];  // [pixels]; on a face where the lens has a table
+    // Where the lens has a table: the face, and how places change from pixel to pixel.
+    alignas(32) int32_t face[CHUNK];
+    alignas(32) float x_right[CHUNK], y_right[CHUNK], x_down[CHUNK], y_down[CHUNK];
+    bool hit, missed, coloured, detailed;  // what there is among the pixels
     alignas(32) float depth[CHUNK];
     Vectors normal;  // world frame
     alignas(32) float u[CHUNK], v[CHUNK], light_u[CHUNK], light_v[CHUNK];
@@ -54,6 +57,12 @@ constexpr float NO_MAP = -1.0f;  // in place of the logarithm of a texture's siz
 // points anywhere in the picture.
 void gather(const Shading& s, Chunk& c);
 void gather_fragments(const Shading& s, const Fragment* fragments, Chunk& c);
+
+// The same through a lens that has a table.
+void gather_through_lens(const Shading& s, Chunk& c);
+
+// Rays of places on faces, in the world frame; 0 where the lens sees nothing.
+Vec3x8 rays_of_faces(const Shading& s, f8 x, f8 y, i8 faces);
 
 // Depth and instance id of a row's pixels, with nothing gathered.
 void write_surface(const Shading& s, int32_t x, int32_t y, int32_t count);

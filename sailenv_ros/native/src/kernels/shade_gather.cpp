@@ -15,11 +15,38 @@ struct RowPlanes {
     bool coloured, detailed;
 };
 
+// The same of a face, through a lens that bends lines: `offset` and the like are at y = 0.
+struct FacePlanes : RowPlanes {
+    f8 down;
+    float inverse_depth_down;
+};
+
+LANES_INLINE float inverse_depth_at(const RowPlanes& r, float x, float) {
+    return r.inverse_depth_slope * x + r.inverse_depth_offset;
+}
+LANES_INLINE f8 inverse_depth_at(const RowPlanes& r, f8 x, f8) {
+    return r.inverse_depth_slope * x + r.inverse_depth_offset;
+}
+LANES_INLINE f8 attributes_at(const RowPlanes& r, float x, float) { return r.slope * x + r.offset; }
+LANES_INLINE f8 attribute_at(const RowPlanes& r, int k, f8 x, f8) {
+    return r.slope[k] * x + r.offset[k];
+}
+template <class Real>
+LANES_INLINE Real inverse_depth_at(const FacePlanes& r, Real x, Real y) {
+    return r.inverse_depth_slope * x + (r.inverse_depth_down * y + r.inverse_depth_offset);
+}
+LANES_INLINE f8 attributes_at(const FacePlanes& r, float x, float y) {
+    return r.slope * x + (r.down * y + r.offset);
+}
+LANES_INLINE f8 attribute_at(const FacePlanes& r, int k, f8 x, f8 y) {
+    return r.slope[k] * x + (r.down[k] * y + r.offset[k]);
+}
+
 constexpr f8 NOTHING_THERE = {1, 0, 0, 0, 0, 0, 0, 1}, PLAIN = {0, 0, 0, 0, 1, 0, 0, 0},
              NO_MAPS = {0, 0, 0, 0, NO_MAP, 0, 0, 0};
 
-LANES_INLINE RowPlanes row_planes(const Shading& s, const Triangle& t, float y) {
-    RowPlanes r;
+// Sets planes up at a row; `down`, if it is asked for, is how they change from row to row.
+LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float y, RowPlanes& r, f8* down) {
     const Part& part = s.parts->parts[t.part];
     const InstanceFrame& frame = s.frames[part.instance];
     const float* vertex = part.vertices;
@@ -40,6 +67,10 @@ LANES_INLINE RowPlanes row_planes(const Shading& s, const Triangle& t, float y) 
              n1 = load(frame.normal_columns[1]) * turned,
              n2 = load(frame.normal_columns[2]) * turned;
     r.slope = object_x * kept + n0 * object_x[0] + n1 * object_x[1] + n2 * object_x[2];
+    if (down != nullptr) {
+        const f8 object_y = a0 * (t.edge[1] * q) + a1 * (t.edge[4] * q) + a2 * (t.edge[7] * q);
+        *down = object_y * kept + n0 * object_y[0] + n1 * object_y[1] + n2 * object_y[2];
+    }
     const f8 depth_lane = {0, 0, 0, 0, 0, 0, 0, 1};
     r.offset =
         object_0 * kept + n0 * object_0[0] + n1 * object_0[1] + n2 * object_0[2] + depth_lane;
@@ -64,6 +95,18 @@ LANES_INLINE RowPlanes row_planes(const Shading& s, const Triangle& t, float y) 
     r.inverse_depth_slope = t.inverse_depth[0];
     r.inverse_depth_offset = t.inverse_depth[1] * y + t.inverse_depth[2];
     r.id = part.id;
+}
+
+LANES_INLINE RowPlanes row_planes(const Shading& s, const Triangle& t, float y) {
+    RowPlanes r;
+    set_planes(s, t, y, r, nullptr);
+    return r;
+}
+
+LANES_INLINE FacePlanes face_planes(const Shading& s, const Triangle& t) {
+    FacePlanes r;
+    set_planes(s, t, 0.0f, r, &r.down);
+    r.inverse_depth_down = t.inverse_depth[1];
     return r;
 }
 
@@ -81,9 +124,11 @@ LANES_INLINE void set_empty(Chunk& c, PixelRows& rows, int32_t i) {
     c.empty[i] = -1;
 }
 
-LANES_INLINE void set_pixel(const RowPlanes& r, float x, Chunk& c, PixelRows& rows, int32_t i) {
-    const float depth = 1.0f / (r.inverse_depth_slope * x + r.inverse_depth_offset);
-    store(rows.attributes + 8 * i, (r.slope * x + r.offset) * depth + r.moved);
+template <class Planes>
+LANES_INLINE void set_pixel(const Planes& r, Chunk& c, PixelRows& rows, int32_t i) {
+    const float x = c.at_x[i], y = c.at_y[i];
+    const float depth = 1.0f / inverse_depth_at(r, x, y);
+    store(rows.attributes + 8 * i, attributes_at(r, x, y) * depth + r.moved);
     store(rows.material + 8 * i, r.look);
     store(rows.maps + 8 * i, r.maps);
     c.colour_texels[i] = r.colour_texels;
@@ -104,12 +149,13 @@ LANES_INLINE Columns columns_of(Chunk& c) {
 }
 
 // Eight pixels of one triangle: each number at its place at once.
-LANES_INLINE void set_eight(const RowPlanes& r, Chunk& c, int32_t i) {
-    const f8 xs = load(c.at_x + i);
-    const f8 depth = 1.0f / (r.inverse_depth_slope * xs + r.inverse_depth_offset);
+template <class Planes>
+LANES_INLINE void set_eight(const Planes& r, Chunk& c, int32_t i) {
+    const f8 xs = load(c.at_x + i), ys = load(c.at_y + i);
+    const f8 depth = 1.0f / inverse_depth_at(r, xs, ys);
     const Columns columns = columns_of(c);
     for (int k = 0; k < 8; k++) {
-        store(columns.attributes[k] + i, (r.slope[k] * xs + r.offset[k]) * depth + r.moved[k]);
+        store(columns.attributes[k] + i, attribute_at(r, k, xs, ys) * depth + r.moved[k]);
         store(columns.material[k] + i, splat(r.look[k]));
         store(columns.maps[k] + i, splat(r.maps[k]));
     }
@@ -149,40 +195,35 @@ LANES_INLINE void prefetch_corners(const Shading& s, const Triangle& t) {
     }
 }
 
-}  // namespace
-
-void write_surface(const Shading& s, int32_t x, int32_t y, int32_t count) {
-    const uint32_t* visible = s.visible + y * s.stride + x;
-    float* surface = s.outputs->surface + 2 * (y * s.width + x);
-    for (int32_t i = 0; i < count;) {
-        const uint32_t tag = visible[i];
-        int32_t end = i + 1;
-        while (end < count && visible[end] == tag) end++;
-        if (tag == NOTHING) {
-            for (; i < end; i++) {
-                surface[2 * i] = __builtin_inff();
-                surface[2 * i + 1] = 0.0f;
-            }
-            continue;
-        }
-        const Triangle& t = s.set->triangles[tag];
-        const float offset = t.inverse_depth[1] * static_cast<float>(y) + t.inverse_depth[2];
-        const float id = static_cast<float>(s.parts->parts[t.part].id);
-        for (; i < end; i++) {
-            surface[2 * i] = 1.0f / (t.inverse_depth[0] * static_cast<float>(x + i) + offset);
-            surface[2 * i + 1] = id;
-        }
+// From slopes along the axes of a face to changes from pixel to pixel.
+LANES_INLINE void set_steps(Chunk& c, int32_t i, const LensSteps& steps) {
+    store(c.x_right + i, steps.x_right);
+    store(c.y_right + i, steps.y_right);
+    store(c.x_down + i, steps.x_down);
+    store(c.y_down + i, steps.y_down);
+}
+void turn_slopes(Chunk& c) {
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const LensSteps steps = {load(c.x_right + i), load(c.y_right + i), load(c.x_down + i),
+                                 load(c.y_down + i)};
+        const auto turn = [&](float* across, float* along) {
+            const f8 a = load(across + i), b = load(along + i);
+            store(across + i, to_right(steps, a, b));
+            store(along + i, downwards(steps, a, b));
+        };
+        turn(c.inverse_depth_x, c.inverse_depth_y);
+        if (!c.coloured && !c.detailed) continue;
+        turn(c.ux, c.uy);
+        turn(c.vx, c.vy);
     }
 }
 
-void gather(const Shading& s, Chunk& c) {
+// Interpolates what is seen at the places of a row's pixels; `planes_of` sets a triangle's planes
+// up.
+template <class PlanesOf>
+LANES_INLINE void gather_runs(const Shading& s, Chunk& c, const PlanesOf& planes_of) {
     const uint32_t* visible = s.visible + c.y * s.stride + c.x;
     PixelRows rows;
-    const float y = static_cast<float>(c.y);
-    for (int32_t i = 0; i < c.padded; i += 8) {
-        store(c.at_x + i, counting() + static_cast<float>(c.x + i));
-        store(c.at_y + i, splat(y));
-    }
     int16_t begins[CHUNK + 1];
     const Triangle* triangles[CHUNK];
     int32_t runs = 0;
@@ -209,7 +250,7 @@ void gather(const Shading& s, Chunk& c) {
             for (; i < end; i++) set_empty(c, rows, i);
             continue;
         }
-        const RowPlanes planes = row_planes(s, *triangles[r], y);
+        const auto planes = planes_of(*triangles[r]);
         c.hit = true;
         c.coloured |= planes.coloured;
         c.detailed |= planes.detailed;
@@ -219,7 +260,7 @@ void gather(const Shading& s, Chunk& c) {
                 set_eight(planes, c, i);
                 i += 8;
             } else {
-                set_pixel(planes, c.at_x[i], c, rows, i);
+                set_pixel(planes, c, rows, i);
                 i++;
             }
         }
@@ -228,6 +269,69 @@ void gather(const Shading& s, Chunk& c) {
     for (int32_t i = 0; i < c.padded; i += 8) {
         if (!(whole >> (i / 8) & 1)) sort_eight(rows, c, i);
     }
+}
+
+}  // namespace
+
+void write_surface(const Shading& s, int32_t x, int32_t y, int32_t count) {
+    const uint32_t* visible = s.visible + y * s.stride + x;
+    float* surface = s.outputs->surface + 2 * (y * s.width + x);
+    for (int32_t i = 0; i < count;) {
+        const uint32_t tag = visible[i];
+        int32_t end = i + 1;
+        while (end < count && visible[end] == tag) end++;
+        if (tag == NOTHING) {
+            for (; i < end; i++) {
+                surface[2 * i] = __builtin_inff();
+                surface[2 * i + 1] = 0.0f;
+            }
+            continue;
+        }
+        const Triangle& t = s.set->triangles[tag];
+        const float id = static_cast<float>(s.parts->parts[t.part].id);
+        if (s.table != nullptr) {
+            const int64_t row = y * s.table->stride + x;
+            for (; i < end; i++) {
+                const float across = s.table->x[row + i], down = s.table->y[row + i];
+                const float depth = 1.0f / (t.inverse_depth[0] * across +
+                                            (t.inverse_depth[1] * down + t.inverse_depth[2]));
+                surface[2 * i] = depth * stretch(across, down);
+                surface[2 * i + 1] = id;
+            }
+            continue;
+        }
+        const float offset = t.inverse_depth[1] * static_cast<float>(y) + t.inverse_depth[2];
+        for (; i < end; i++) {
+            surface[2 * i] = 1.0f / (t.inverse_depth[0] * static_cast<float>(x + i) + offset);
+            surface[2 * i + 1] = id;
+        }
+    }
+}
+
+void gather(const Shading& s, Chunk& c) {
+    const float y = static_cast<float>(c.y);
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        store(c.at_x + i, counting() + static_cast<float>(c.x + i));
+        store(c.at_y + i, splat(y));
+    }
+    gather_runs(s, c, [&](const Triangle& t) { return row_planes(s, t, y); });
+}
+
+void gather_through_lens(const Shading& s, Chunk& c) {
+    const LensTable& lens = *s.table;
+    const int64_t first = c.y * lens.stride + c.x;
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 x = load(lens.x + first + i), y = load(lens.y + first + i);
+        const i8 seen = x == x;
+        store(c.at_x + i, seen ? x : splat(0.0f));
+        store(c.at_y + i, seen ? y : splat(0.0f));
+        for (int k = 0; k < 8; k++) {
+            c.face[i + k] = seen[k] ? lens.face[first + i + k] : NO_FACE;
+        }
+        set_steps(c, i, steps_at(lens, c.y, c.x + i));
+    }
+    gather_runs(s, c, [&](const Triangle& t) { return face_planes(s, t); });
+    turn_slopes(c);
 }
 
 void gather_fragments(const Shading& s, const Fragment* fragments, Chunk& c) {
@@ -245,6 +349,7 @@ void gather_fragments(const Shading& s, const Fragment* fragments, Chunk& c) {
         const Fragment& f = fragments[i < c.count ? i : 0];
         c.at_x[i] = f.x;
         c.at_y[i] = f.y;
+        c.face[i] = f.face;
         if (i >= c.count || f.tag == NOTHING) {
             c.missed |= i < c.count;
             set_empty(c, rows, i);
@@ -254,9 +359,19 @@ void gather_fragments(const Shading& s, const Fragment* fragments, Chunk& c) {
         c.hit = true;
         c.coloured |= planes.coloured;
         c.detailed |= planes.detailed;
-        set_pixel(planes, f.x, c, rows, i);
+        set_pixel(planes, c, rows, i);
     }
     for (int32_t i = 0; i < c.padded; i += 8) sort_eight(rows, c, i);
+    if (s.table == nullptr) return;
+    for (int32_t i = 0; i < c.padded; i++) {
+        const Fragment& f = fragments[i < c.count ? i : 0];
+        const PixelStep steps = step_at(*s.table, f.pixel_y, f.pixel_x);
+        c.x_right[i] = steps.x_right;
+        c.y_right[i] = steps.y_right;
+        c.x_down[i] = steps.x_down;
+        c.y_down[i] = steps.y_down;
+    }
+    turn_slopes(c);
 }
 
 }  // namespace sailenv

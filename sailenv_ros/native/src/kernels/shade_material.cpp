@@ -89,6 +89,25 @@ void multiply_by_maps(Chunk& c, float bias, float most) {
     }
 }
 
+// How rays change from pixel to pixel, from changes of their places on faces.
+Vec3x8 face_steps(const Shading& s, const Chunk& c, int32_t i, const float* x, const float* y) {
+    const int32_t first = c.face[i];
+    if (first != NO_FACE && !any(load(c.face + i) != first)) {
+        const Mat3& turn = s.world_from_face[first];
+        return turn.column(0) * load(x + i) + turn.column(1) * load(y + i);
+    }
+    Vec3x8 steps;
+    for (int32_t k = 0; k < 8; k++) {
+        const int32_t at = i + k, face = c.face[at] == NO_FACE ? 0 : c.face[at];
+        const Mat3& turn = s.world_from_face[face];
+        const vec3 step = turn.column(0) * x[at] + turn.column(1) * y[at];
+        steps.x[k] = step.x;
+        steps.y[k] = step.y;
+        steps.z[k] = step.z;
+    }
+    return steps;
+}
+
 }  // namespace
 
 void colour_for_picture(Chunk& c) { multiply_by_maps(c, PICTURE_BIAS, MOST_LOOK_UPS); }
@@ -103,7 +122,7 @@ void apply_detail_maps(const Shading& s, Chunk& c) {
         const f8 level = level_of_detail(d.ux, d.vx, d.uy, d.vy, size, 0.5f);
         store_taps(taps, i, texture_taps(load(c.u + i), load(c.v + i), size, truncated(level)));
     }
-    const auto [right, down] = ray_steps(s.lens, s.world_from_camera);
+    const RaySteps everywhere = ray_steps(s.lens, s.world_from_camera);
     alignas(32) float texels[4 * 8];
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 relief = load(c.relief + i), finish = load(c.finish + i);
@@ -126,6 +145,11 @@ void apply_detail_maps(const Shading& s, Chunk& c) {
         const f8 zx = -depth * load(c.inverse_depth_x + i),
                  zy = -depth * load(c.inverse_depth_y + i);
         const Vec3x8 ray = c.ray.at(i), normal = c.normal.at(i);
+        Vec3x8 right = splat(everywhere.right), down = splat(everywhere.down);
+        if (s.table != nullptr) {
+            right = face_steps(s, c, i, c.x_right, c.y_right);
+            down = face_steps(s, c, i, c.x_down, c.y_down);
+        }
         const Vec3x8 across_y = cross(down + ray * zy, normal);
         const Vec3x8 across_x = cross(normal, right + ray * zx);
         const Vec3x8 tangent = across_y * d.ux + across_x * d.uy;

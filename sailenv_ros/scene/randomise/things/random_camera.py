@@ -18,12 +18,12 @@ from sailenv_ros.scene.randomise.randomisation import (
 from sailenv_ros.scene.randomise.relative import DrawnNumber
 from sailenv_ros.scene.randomise.selectors import Which
 from sailenv_ros.scene.rules import at_most_one, only_beside
-from sailenv_ros.types.camera import INTRINSICS_LIMITS
+from sailenv_ros.types.lens_settings import PINHOLE_FOV
 from sailenv_ros.types.picture_settings import LIMITS
 
 __all__ = ["RandomCamera"]
 
-_Angle = Annotated[float, Number.within(INTRINSICS_LIMITS["vertical_fov_deg"])]
+_Angle = Annotated[float, Number.within(PINHOLE_FOV)]
 _Stops = Annotated[float, Number.within(LIMITS["exposure"])]
 _RuleName = Annotated[str, Text(r"[a-z][a-z0-9_]{0,62}", "the name of a camera rule")]
 _Seed = Annotated[int, Number(least=0, most=2**31 - 1, whole=True)]

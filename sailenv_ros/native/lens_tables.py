@@ -1,0 +1,44 @@
+"""The structures of src/kernels/lens_table.h as NumPy types: lenses that bend straight lines.
+
+Fields that end in `_at` hold addresses of arrays; whoever fills them keeps the arrays alive.
+"""
+
+from __future__ import annotations
+
+from sailenv_ros.native.render_types import ADDRESS, structure
+
+__all__ = [
+    "BLOCK_CELLS",
+    "CUBE_FACE",
+    "CUBE_FACES",
+    "FACE_CELLS",
+    "FACE_NODE",
+    "LENS_TABLE",
+    "LENS_TILE",
+    "LENS_TILE_SHAPE",
+    "UNKNOWN_BEND",
+]
+
+CUBE_FACES = 6
+FACE_CELLS, BLOCK_CELLS = 128, 8
+LENS_TILE_SHAPE = 8, 8
+"""Rows and columns of a tile."""
+
+UNKNOWN_BEND = 1e30
+
+FACE_NODE = structure(("u v bend wide_bend", "<f4"))
+
+CUBE_FACE = structure(
+    ("turn", "<f8", 9),
+    ("low high", "<f8", 2),
+    ("origin per", "<f4", 2),
+    ("nodes_at cells_at blocks_at", ADDRESS),
+    ("all", "<i2", 4),
+)
+
+LENS_TILE = structure(("low high", "<f4", 2), ("faces", "<i4"))
+
+LENS_TABLE = structure(
+    ("x_at y_at face_at steps_at tiles_at faces_at", ADDRESS),
+    ("stride tile_columns rows columns step_stride step_rows several fine", "<i8"),
+)

@@ -1,0 +1,119 @@
+// Where the samples of a picture look through a lens that bends straight lines.
+//
+// Rays are places (x, y) on faces of a cube around the eye: a face sees the points z (x, y, 1) of a
+// frame of its own. On a face straight lines are straight, so triangles have there the edge
+// functions that they have in the picture of a pin-hole; only the samples lie where the lens says.
+// The tables mirror those of native/lens_tables.py and are made by render/cpu/cube_faces.py.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "lanes.h"
+#include "vec3.h"
+
+namespace sailenv {
+
+constexpr int32_t CUBE_FACES = 6;
+constexpr int32_t FACE_CELLS = 128;                           // of a face, along each side
+constexpr int32_t BLOCK_CELLS = 8;                            // of a block of them, along each side
+constexpr int32_t LENS_TILE_COLUMNS = 8, LENS_TILE_ROWS = 8;  // of samples
+constexpr int32_t NO_FACE = -1;                               // where the lens sees nothing
+constexpr float UNKNOWN_BEND = 1e30f;
+
+// Where a place of a face lies in the picture, at the nodes of a grid of cells [samples]. Within a
+// cell and the next one on each side a straight line bends by at most `bend` over the length of a
+// cell, within the next four by `wide_bend`; both are unknown where the lens does not map.
+struct FaceNode {
+    float u, v, bend, wide_bend;
+};
+
+// First column, first row, last column, last row; the first are greater where there is none.
+struct SampleBox {
+    int16_t x0, y0, x1, y1;
+};
+
+struct CubeFace {
+    double turn[9];           // the face's frame from the camera's, by rows
+    double low[2], high[2];   // least and greatest x and y of its samples
+    float origin[2], per[2];  // node = (place - origin) * per
+    const FaceNode* nodes;    // (FACE_CELLS + 1, FACE_CELLS + 1)
+    const SampleBox* cells;   // (FACE_CELLS, FACE_CELLS): the samples that lie in each
+    const SampleBox* blocks;  // (FACE_CELLS / BLOCK_CELLS, ...)
+    SampleBox all;            // samples of the face; none where the face is not used
+};
+
+// A tile's samples: which faces they lie on, and the places' bounds if that is one.
+struct LensTile {
+    float low[2], high[2];
+    int32_t faces;  // a bit for each
+};
+
+struct LensTable {
+    const float *x, *y;     // (rows, stride): NaN where the lens sees nothing, and beyond the row
+    const uint8_t* face;    // (rows, stride)
+    const float* steps;     // (4, H, step_stride), from pixel to pixel; see LensSteps
+    const LensTile* tiles;  // (tile rows, tile_columns)
+    const CubeFace* faces;  // (CUBE_FACES,)
+    int64_t stride, tile_columns;
+    int64_t rows, columns;  // samples
+    int64_t step_stride, step_rows;
+    int64_t several;  // 1: samples lie on several faces
+    int64_t fine;     // 1: samples lie half a pixel apart
+};
+
+LANES_INLINE bool is_used(const CubeFace& face) { return face.all.x0 <= face.all.x1; }
+
+// Which of eight samples lie on a face.
+LANES_INLINE i8 lies_on(const uint8_t* faces, int32_t face) {
+    typedef uint8_t b8 __attribute__((vector_size(8)));
+    b8 numbers;
+    memcpy(&numbers, faces, 8);
+    return __builtin_convertvector(numbers, i8) == face;
+}
+
+// How places change from pixel to pixel, at eight samples of a row.
+struct LensSteps {
+    f8 x_right, y_right, x_down, y_down;
+};
+LANES_INLINE LensSteps steps_at(const LensTable& lens, int32_t row, int32_t x) {
+    const int64_t plane = lens.step_rows * lens.step_stride;
+    if (!lens.fine) {
+        const float* p = lens.steps + row * lens.step_stride + x;
+        return {load(p), load(p + plane), load(p + 2 * plane), load(p + 3 * plane)};
+    }
+    // Of the pixels that fine samples lie in, or right beside.
+    const int64_t last = lens.step_rows - 1, v = row > 0 ? (row - 1) / 2 : 0;
+    const float* from = lens.steps + (v < last ? v : last) * lens.step_stride;
+    alignas(32) float found[4][8];
+    for (int32_t k = 0; k < 8; k++) {
+        const float* p = from + (x + k > 0 ? (x + k - 1) / 2 : 0);
+        for (int j = 0; j < 4; j++) found[j][k] = p[j * plane];
+    }
+    return {load(found[0]), load(found[1]), load(found[2]), load(found[3])};
+}
+
+// The same at one pixel.
+struct PixelStep {
+    float x_right, y_right, x_down, y_down;
+};
+LANES_INLINE PixelStep step_at(const LensTable& lens, int32_t row, int32_t x) {
+    const int64_t plane = lens.step_rows * lens.step_stride;
+    const float* p = lens.steps + row * lens.step_stride + x;
+    return {p[0], p[plane], p[2 * plane], p[3 * plane]};
+}
+
+// Where samples lie a pixel apart along the axes of a face: in the picture of a pin-hole.
+struct PixelSteps {};
+
+// The change of a linear function with slopes a and b from pixel to pixel.
+LANES_INLINE f8 to_right(const PixelSteps&, f8 a, f8) { return a; }
+LANES_INLINE f8 downwards(const PixelSteps&, f8, f8 b) { return b; }
+LANES_INLINE f8 to_right(const LensSteps& s, f8 a, f8 b) { return a * s.x_right + b * s.y_right; }
+LANES_INLINE f8 downwards(const LensSteps& s, f8 a, f8 b) { return a * s.x_down + b * s.y_down; }
+
+// Distance along the ray over depth on the face.
+LANES_INLINE f8 stretch(f8 x, f8 y) { return sqrt8(x * x + y * y + 1.0f); }
+LANES_INLINE float stretch(float x, float y) { return __builtin_sqrtf(x * x + y * y + 1.0f); }
+
+}  // namespace sailenv
