@@ -29,6 +29,7 @@ from sailenv_ros.simulation.operations.operation import Caller
 from sailenv_ros.types.picture_settings import PictureSettings
 from tests.packaging.pages import PAGES, sailenv_words
 from tests.packaging.project import ROOT
+from tests.support.faults import faults_of
 
 CALLER = cast(Caller, SimpleNamespace(own_agent=None))
 CLASSES = {"agent": Agent, "simulation": Simulation}
@@ -76,9 +77,13 @@ def fill(message: Any, values: Mapping[str, Any]) -> None:
             setattr(message, name, type(field)(value) if isinstance(field, float) else value)
 
 
-@pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
-def test_a_service_call_has_the_fields_of_its_service(call: str) -> None:
+def test_service_calls_have_the_fields_of_their_services() -> None:
     """And an operation of ours takes what they say."""
+    assert faults_of(check_call, CALLS) == {}
+
+
+def check_call(call: str) -> None:
+    """Make the request, and bind it to the operation."""
     words = shlex.split(call)
     name, type_ = words[3], words[4]
     package, _, kind = type_.split("/")
@@ -113,9 +118,8 @@ def options_of(line: str) -> list[str]:
     return sailenv_words(words[words.index("sailenv") + 1 :])
 
 
-@pytest.mark.parametrize("line", INLINE.values(), ids=INLINE)
-def test_a_command_in_a_sentence_is_parsed(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It may leave out what it needs, and name an option without its value; no more."""
+def test_commands_in_sentences_are_parsed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They may leave out what they need, and name an option without its value; no more."""
 
     def leave(self: argparse.ArgumentParser, status: int = 0, message: str | None = None) -> None:
         raise HelpShown
@@ -125,6 +129,11 @@ def test_a_command_in_a_sentence_is_parsed(line: str, monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(argparse.ArgumentParser, "exit", leave)
     monkeypatch.setattr(argparse.ArgumentParser, "error", refuse)
+    assert faults_of(check_line, INLINE) == {}
+
+
+def check_line(line: str) -> None:
+    """Parse a command."""
     words = options_of(line)
     try:
         command_parser(words).parse_args(words)
@@ -157,9 +166,13 @@ def value_of(node: ast.expr) -> Any:
     return ast.literal_eval(node)
 
 
-@pytest.mark.parametrize("code", ONE_LINERS.values(), ids=ONE_LINERS)
-def test_a_one_liner_of_a_table_fits_its_signature(code: str) -> None:
+def test_one_liners_of_tables_fit_their_signatures() -> None:
     """An operation checks its arguments as well."""
+    assert faults_of(check_one_liner, ONE_LINERS) == {}
+
+
+def check_one_liner(code: str) -> None:
+    """Bind what is called to its signature; what is not called is no function."""
     node = ast.parse(code.replace("…", "..."), mode="eval").body
     call = node if isinstance(node, ast.Call) else None
     attribute = node.func if isinstance(node, ast.Call) else node

@@ -25,6 +25,7 @@ from sailenv_ros.scene.yaml_nodes import compose
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.operations import Operation
 from tests.packaging.pages import blocks
+from tests.support.faults import faults_of
 
 PROGRAMS = dict(blocks("python"))
 FRAGMENTS = dict(blocks("py"))
@@ -112,14 +113,18 @@ with Simulation("bobbing.yaml", mode="lockstep", allow_modules=True) as simulati
     assert float(run("-c", program, folder=tmp_path)) != 0.0
 
 
-@pytest.mark.parametrize("place", FRAGMENTS)
-def test_a_fragment_fits_what_it_calls(place: str) -> None:
-    """Its imports are there, and what it calls of an agent or a simulation has these arguments."""
-    for node in ast.walk(ast.parse(FRAGMENTS[place])):
+def test_fragments_fit_what_they_call() -> None:
+    """Imports are there, and what is called of an agent or a simulation has these arguments."""
+    assert faults_of(check_fragment, FRAGMENTS) == {}
+
+
+def check_fragment(code: str) -> None:
+    """Look up what it imports, and bind what it calls."""
+    for node in ast.walk(ast.parse(code)):
         if isinstance(node, ast.ImportFrom) and str(node.module).startswith("sailenv_"):
             module = importlib.import_module(str(node.module))
             assert [alias.name for alias in node.names if not hasattr(module, alias.name)] == []
-    for call, name, attribute in calls(FRAGMENTS[place]):
+    for call, name, attribute in calls(code):
         for kind in CLASSES[name]:
             check(call, getattr(kind, attribute))
 
@@ -163,10 +168,14 @@ PARTS = {
 }
 
 
-@pytest.mark.parametrize("place", PARTS)
-def test_a_part_of_a_scene_file_is_one(place: str) -> None:
-    """Keys and values are those of the format; it may name what only a whole scene has."""
-    node, problems = compose(PARTS[place])
+def test_parts_of_scene_files_are_such() -> None:
+    """Keys and values are those of the format; they may name what only a whole scene has."""
+    assert faults_of(check_part, PARTS) == {}
+
+
+def check_part(text: str) -> None:
+    """Read it as a scene."""
+    node, problems = compose(text)
     assert node is not None
     assert problems == []
     assert broken_keys({"version": 1, **node.plain()}) == []

@@ -404,27 +404,12 @@ def line_of(running: subprocess.Popen[str]) -> str:
 
 
 def test_a_killed_simulator_is_told_at_once() -> None:
-    """kill -9 makes the request that waits, and those after it, raise SimulatorLost."""
-    with Agent(**SMALL, namespace="/killed", simulator=LOCKSTEP) as agent:
-        agent.get_frame()
-        assert agent.simulator_pid is not None
-        os.kill(agent.simulator_pid, signal.SIGKILL)
-        with pytest.raises(SimulatorLost, match=r"the simulator has ended; .* did not come \("):
-            agent.get_frame()
-        with pytest.raises(SimulatorLost, match=r"the simulator has ended; .* did not come \("):
-            agent.get_position()
-        # A new Agent starts a new simulator, while the old one is still open.
-        with Agent(**SMALL, namespace="/killed", simulator=LOCKSTEP) as successor:
-            assert successor.get_frame()["sequence"] == 1
-
-
-def test_a_killed_simulator_that_was_joined_is_told_too() -> None:
-    """Whoever joined a simulator learns of its end as well as who started it."""
+    """kill -9 makes requests raise SimulatorLost, for the Agent that started it and others."""
     code = """
 import sys
 from sailenv_ros import Agent
 from sailenv_ros.errors import SimulatorLost
-with Agent(width=64, height=48, namespace="/joined") as agent:
+with Agent(width=64, height=48, namespace="/killed") as agent:
     assert agent.simulator_pid is None
     agent.get_frame()
     print("joined", flush=True)
@@ -435,16 +420,23 @@ with Agent(width=64, height=48, namespace="/joined") as agent:
         print("lost:", lost, flush=True)
 """
     with (
-        Agent(**SMALL, namespace="/joined", simulator=LOCKSTEP) as starter,
+        Agent(**SMALL, namespace="/killed", simulator=LOCKSTEP) as agent,
         program(code) as joiner,
     ):
-        assert joiner.stdout is not None
-        assert joiner.stdout.readline() == "joined\n"
-        assert starter.simulator_pid is not None
-        os.kill(starter.simulator_pid, signal.SIGKILL)
+        agent.get_frame()
+        assert line_of(joiner) == "joined"
+        assert agent.simulator_pid is not None
+        os.kill(agent.simulator_pid, signal.SIGKILL)
         out, _ = joiner.communicate("\n", timeout=60)
         assert out.startswith("lost: the simulator has ended")
         assert joiner.returncode == 0
+        with pytest.raises(SimulatorLost, match=r"the simulator has ended; .* did not come \("):
+            agent.get_frame()
+        with pytest.raises(SimulatorLost, match=r"the simulator has ended; .* did not come \("):
+            agent.get_position()
+        # A new Agent starts a new simulator, while the old one is still open.
+        with Agent(**SMALL, namespace="/killed", simulator=LOCKSTEP) as successor:
+            assert successor.get_frame()["sequence"] == 1
 
 
 def test_a_simulator_that_was_started_ends_with_its_last_agent() -> None:

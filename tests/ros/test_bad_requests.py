@@ -54,13 +54,19 @@ def node(tmp_path_factory: pytest.TempPathFactory) -> Iterator[NodeProcess]:
 def probe(node: NodeProcess) -> Iterator[Probe]:
     """A client of that node."""
     with Probe(NAMESPACE) as probe:
+        probe.discover({name_of(service): service.type for service in TRIED})
         yield probe
+
+
+def name_of(service: Service) -> str:
+    """Return the name of a service below the simulator's namespace."""
+    return f"agent/{service.name}" if service.of_agent else service.name
 
 
 @pytest.mark.parametrize("service", TRIED, ids=lambda service: service.name)
 def test_bad_requests(node: NodeProcess, probe: Probe, service: Service) -> None:
     """The whole scene and the agent's pose are the same after a refusal, and no error is ours."""
-    name = f"agent/{service.name}" if service.of_agent else service.name
+    name = name_of(service)
     random = np.random.default_rng(list(name.encode()))
     before = state(probe)
     refused = 0

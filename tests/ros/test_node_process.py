@@ -13,17 +13,26 @@ from sensor_msgs.msg import Image
 from sailenv_msgs.srv import Reset, Step
 from tests.support.ros_probe import BEST_EFFORT, Probe
 from tests.support.sim_node_process import NodeProcess
+from tests.support.tool_process import run_several
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
 
 SMALL = {"mode": "lockstep", "agent__width": 64, "agent__height": 48}
+QUIET = {"scene": "optical", "publish_clock": False, "gateway.port": 0, "viewer.port": 0}
 
 
 @pytest.fixture
 def node() -> Iterator[NodeProcess]:
     """A small lockstep simulator."""
     with NodeProcess("/ending", **SMALL) as node:
+        yield node
+
+
+@pytest.fixture(scope="module")
+def standing() -> Iterator[NodeProcess]:
+    """One that no test ends."""
+    with NodeProcess("/standing", **SMALL) as node:
         yield node
 
 
@@ -92,86 +101,82 @@ def test_the_death_of_a_parent_ends_it() -> None:
 # -- the beginning -------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("parameters", "sentence"),
-    [
-        ({"scene": "opticle"}, "scene must be one of: "),
-        ({"agent__width": 3}, "parameter agent.width must be an integer from 8 to 4096"),
-        ({"agent__near_m": 200.0}, "near_m must be less than far_m"),
-        ({"agent__name": "No Name"}, "name of the agent must be"),
-        ({"mode": "fast"}, "parameter mode must be one of: realtime, lockstep, got 'fast'"),
-        ({"seed": "many"}, "parameter seed must be of the type of 0, got 'many'"),
-        ({"widht": 3}, "parameter must be one of: scene,"),
-        ({"scene_paths": 3}, "parameter scene_paths must be of the type of"),
-    ],
+WRONG: tuple[tuple[dict[str, object], str], ...] = (
+    ({"scene": "opticle"}, "scene must be one of: "),
+    ({"agent.width": 3}, "parameter agent.width must be an integer from 8 to 4096"),
+    ({"agent.near_m": 200.0}, "near_m must be less than far_m"),
+    ({"agent.name": "No Name"}, "name of the agent must be"),
+    ({"mode": "fast"}, "parameter mode must be one of: realtime, lockstep, got 'fast'"),
+    ({"seed": "many"}, "parameter seed must be of the type of 0, got 'many'"),
+    ({"widht": 3}, "parameter must be one of: scene,"),
+    ({"scene_paths": 3}, "parameter scene_paths must be of the type of"),
+    ({"gateway.port": 45_100, "gateway.host": "203.0.113.1"}, "address of the gateway"),
 )
-def test_a_wrong_parameter_ends_it_with_a_reason(
-    parameters: dict[str, object], sentence: str
-) -> None:
-    """Status 2 and one line that says what was wrong and what is accepted."""
-    with NodeProcess("/wrong", ready=False, **parameters) as node:
-        assert node.status() == 2
-        [fatal] = [line for line in node.lines if "[FATAL]" in line]
-        assert sentence in fatal
-        assert "Traceback" not in node.log
 
 
-def test_a_faulty_scene_file_ends_it_with_every_fault(tmp_path: Path) -> None:
-    """Status 2, and each error with its file, line and column."""
+def test_wrong_parameters_end_it_with_a_reason(tmp_path: Path) -> None:
+    """Status 2 and one line that says what was wrong and what is accepted; a scene's, with places.
+
+    So does an argument that ROS does not understand.
+    """
     scene = tmp_path / "broken.yaml"
     scene.write_text("version: 1\ntitle: Broken\nobjcts: []\nlights: 3\n", encoding="utf-8")
-    with NodeProcess("/broken", ready=False, scene=str(scene)) as node:
-        assert node.status() == 2
-        assert f"{scene}:3:1" in node.log
-        assert f"{scene}:4:" in node.log
-        assert "Traceback" not in node.log
+    settings = [{**QUIET, **parameters} for parameters, _ in WRONG]
+    *runs, faulty, nonsense = run_several(
+        "sim_node", "/wrong", *settings, {**QUIET, "scene": str(scene)}, ("-r", "nonsense")
+    )
+    for (_, sentence), (_, log) in zip(WRONG, runs, strict=True):
+        [fatal] = [line for line in log.splitlines() if "[FATAL]" in line]
+        assert sentence in fatal
+    assert f"{scene}:3:1" in faulty[1]
+    assert f"{scene}:4:" in faulty[1]
+    for status, log in (*runs, faulty, nonsense):
+        assert status == 2
+        assert "Traceback" not in log
 
 
-def test_wrong_arguments_end_it_with_a_reason() -> None:
-    """Status 2 where ROS does not understand an argument or the domain is beyond its numbers."""
-    with NodeProcess("/wrong", ready=False, remaps=("-r", "nonsense")) as node:
-        assert node.status() == 2
-        assert "Traceback" not in node.log
+def test_a_wrong_domain_ends_it_with_a_reason() -> None:
+    """Status 2 where it is beyond the numbers of domains."""
     with NodeProcess("/wrong", ready=False, environment={"ROS_DOMAIN_ID": "233"}) as node:
         assert node.status() == 2
         assert "ROS_DOMAIN_ID must be an integer from 0 to 232, got 233" in node.log
 
 
-def test_a_second_simulator_of_one_namespace_is_refused(node: NodeProcess) -> None:
+def test_a_second_simulator_of_one_namespace_is_refused(standing: NodeProcess) -> None:
     """Status 3; the first one does not notice, and another namespace is free."""
-    with NodeProcess("/ending", ready=False, **SMALL) as second:
+    with NodeProcess("/standing", ready=False, **SMALL) as second:
         assert second.status() == 3
-        assert "not in use yet, got '/ending'" in second.log
-    assert node.alive
-    with NodeProcess("/ending/elsewhere", **SMALL) as third, Probe("/ending/elsewhere") as probe:
+        assert "not in use yet, got '/standing'" in second.log
+    assert standing.alive
+    elsewhere = "/standing/elsewhere"
+    with NodeProcess(elsewhere, **SMALL) as third, Probe(elsewhere) as probe:
         probe.done(Reset, "reset", Reset.Request(keep_seed=True))
         assert third.alive
 
 
-def test_it_greets_with_one_line(node: NodeProcess) -> None:
+def test_it_greets_with_one_line(standing: NodeProcess) -> None:
     """The line names scene, namespace, renderer and agents, and how to see pictures."""
-    [line] = [line for line in node.lines if "to see:" in line]
-    assert "scene 'optical' in /ending" in line
+    [line] = [line for line in standing.lines if "to see:" in line]
+    assert "scene 'optical' in /standing" in line
     assert "renderer: " in line
     assert "agents: agent" in line
-    assert "/ending/agent/rgb" in line
+    assert "/standing/agent/rgb" in line
 
 
-def test_its_parameters_can_come_from_the_shipped_file() -> None:
-    """config/sim_node.yaml names parameters that exist, with the defaults that they have."""
+def test_parameters_come_from_the_shipped_file_and_quality_of_service_from_overrides() -> None:
+    """config/sim_node.yaml names parameters that exist, with the defaults that they have.
+
+    A publisher takes over what `qos_overrides` says of its topic.
+    """
     file = Path(__file__).parents[2] / "config" / "sim_node.yaml"
-    remaps = ("--params-file", str(file))
-    with NodeProcess("/filed", remaps=remaps, mode="lockstep") as node:
-        assert "agents: agent" in node.log
-
-
-def test_quality_of_service_can_be_overridden() -> None:
-    """A publisher takes over what `qos_overrides` says of its topic."""
     override = "qos_overrides./overridden/agent/rgb.publisher.reliability:=best_effort"
     with (
-        NodeProcess("/overridden", remaps=("-p", override), **SMALL),
+        NodeProcess(
+            "/overridden", remaps=("--params-file", str(file), "-p", override), **SMALL
+        ) as node,
         Probe("/overridden") as probe,
     ):
+        assert "agents: agent" in node.log
         topic = "/overridden/agent/rgb"
         until(lambda: probe.node.get_publishers_info_by_topic(topic), "the publisher")
         [publisher] = probe.node.get_publishers_info_by_topic(topic)

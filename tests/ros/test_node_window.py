@@ -12,7 +12,6 @@ from sailenv_msgs.srv import GetPose
 from tests.support.browser import OpenPage, chromium
 from tests.support.ros_probe import Probe
 from tests.support.sim_node_process import NodeProcess
-from tests.support.waiting import until
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -57,12 +56,3 @@ def test_keys_in_the_browser_move_what_ros_agents_see_from(browser: Browser) -> 
         node.close()
         assert node.status() == 0
         assert "Traceback" not in node.log
-
-
-def test_a_port_in_use_is_no_reason_not_to_start() -> None:
-    """The node says that there is no window, and runs."""
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
-        with NodeProcess(NAMESPACE, viewer__port=port) as node:
-            until(lambda: "no window in the browser here" in node.log, "the warning")
-            assert node.alive

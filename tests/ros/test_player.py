@@ -19,7 +19,7 @@ from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_ros.recording.reader import RecordingReader
 from tests.support.recordings import DT_NS, write_noise
 from tests.support.ros_probe import BEST_EFFORT, LATCHED, Probe
-from tests.support.tool_process import ToolProcess
+from tests.support.tool_process import ToolProcess, run_several
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -155,14 +155,15 @@ def test_what_cannot_be_played_is_told_at_once(bag: Path, tmp_path: Path) -> Non
     shutil.copytree(bag, copy)
     cut = copy / "bag_0.mcap"
     cut.write_bytes(cut.read_bytes()[:-100])
-    for parameters, sentence in (
+    refused: tuple[tuple[dict[str, object], str], ...] = (
         ({}, "parameter input must be"),
         ({"input": str(tmp_path / "none")}, "is not there"),
         ({"input": str(copy)}, "sailenv bag recover"),
         ({"input": str(bag), "topics": ["/sailenv/eye/rbg"]}, "did you mean"),
         ({"input": str(bag), "rate": 0.0}, "rate must be"),
         ({"input": str(bag), "start_s": 99.0}, "start must be from 0"),
-    ):
-        with ToolProcess("player", "/", "", **parameters) as process:
-            assert process.status() == 2
-            assert process.said(sentence), process.log
+    )
+    runs = run_several("player", "/", *(parameters for parameters, _ in refused))
+    for (_, sentence), (status, log) in zip(refused, runs, strict=True):
+        assert status == 2
+        assert sentence in log

@@ -21,7 +21,7 @@ from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
 from tests.support.ros_probe import BEST_EFFORT, Probe
 from tests.support.sim_node_process import NodeProcess
-from tests.support.tool_process import ToolProcess
+from tests.support.tool_process import ToolProcess, run_several
 from tests.support.waiting import until
 from tests.unit.recording.test_reader import same_dict
 
@@ -176,15 +176,16 @@ def test_a_killed_recorder_leaves_what_can_be_restored(node: NodeProcess, tmp_pa
 def test_what_cannot_be_written_is_told_at_once(node: NodeProcess, tmp_path: Path) -> None:
     """An existing bag, a wrong name, an unknown parameter: status 2 and one sentence."""
     (tmp_path / "bag").mkdir()
-    for parameters, sentence in (
+    refused: tuple[tuple[dict[str, object], str], ...] = (
         ({"output": str(tmp_path / "bag")}, "exists already"),
         ({"output": str(tmp_path / "b"), "views": ["rgbd"]}, "did you mean 'rgb'"),
         ({"output": str(tmp_path / "c"), "outpt": "x"}, "did you mean 'output'"),
         ({"output": "/proc/bag"}, "cannot be made"),
-    ):
-        with ToolProcess("recorder", NAMESPACE, "", **parameters) as process:
-            assert process.status() == 2
-            assert process.said(sentence), process.log
+    )
+    runs = run_several("recorder", NAMESPACE, *(parameters for parameters, _ in refused))
+    for (_, sentence), (status, log) in zip(refused, runs, strict=True):
+        assert status == 2
+        assert sentence in log
 
 
 def test_a_recording_begins_when_it_begins(node: NodeProcess, tmp_path: Path) -> None:

@@ -413,6 +413,7 @@ def test_hostile_requests_are_answered(probe: Probe, scene: Topic, requests: lis
     """Each is done or refused in one sentence that blames no fault, and the node goes on."""
     eye = AgentInfo(name="eye", width=32, height=24, rate_hz=0.0)
     probe.call(RegisterAgent, "register_agent", RegisterAgent.Request(agent=eye))
+    probe.discover({name: kind for kind, name in SERVICES.values()})
     for request in requests:
         kind, service = SERVICES[type(request)]
         answer = probe.call(kind, service, request)

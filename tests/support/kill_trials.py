@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -21,6 +22,7 @@ from typing import Any
 import yaml
 from mcap.reader import make_reader
 
+from sailenv_content.standard.fetch import fetched
 from sailenv_ros.light.bake.light_files import DIGEST_BYTES, MAGIC
 from sailenv_ros.system.files import UNFINISHED
 from sailenv_ros.system.user_folders import cache_folder
@@ -86,6 +88,7 @@ sys.exit(main(sys.argv[1:]))
 """A stream's parts of 500 frames would take most of the time."""
 
 FURNITURE = ("apple_01", "book_01", "cup_01")
+SKIES = "blender-data"
 
 SAILENV = (sys.executable, "-m", "sailenv_ros.cli.main")
 
@@ -109,10 +112,27 @@ class Work:
     prepare: Callable[[Path], object] = lambda folder: None
 
 
+_FEW_SKIES = f"""
+import sys
+from pathlib import Path
+from sailenv_content.standard import pack_build
+from sailenv_ros.cli.furniture import build_furniture
+
+if __name__ == "__main__":
+    fetched = pack_build.fetched
+    few = Path(sys.argv[1])
+    pack_build.fetched = lambda name, **how: few if name == {SKIES!r} else fetched(name, **how)
+    build_furniture(names={FURNITURE}, jobs=2)
+"""
+"""All skies would take most of the time."""
+
+
 def _linked_sources(folder: Path) -> None:
-    """Have the build find what was downloaded before; nothing is changed there."""
+    """Have the build find what was downloaded before, and one sky; nothing is changed there."""
     (folder / "cache").mkdir()
     (folder / "cache" / "sources").symlink_to(cache_folder() / "sources")
+    (folder / "skies").mkdir()
+    shutil.copy(fetched(SKIES) / "night.exr", folder / "skies")
 
 
 WORKS: Mapping[str, Work] = {
@@ -137,12 +157,7 @@ WORKS: Mapping[str, Work] = {
         prepare=lambda folder: (folder / "room.yaml").write_text(ROOM),
     ),
     "furniture": Work(
-        command=lambda folder: (
-            sys.executable, "-c",
-            "from sailenv_ros.cli.furniture import build_furniture\n"
-            "if __name__ == '__main__':\n"
-            f"    build_furniture(names={FURNITURE}, jobs=2)",
-        ),
+        command=lambda folder: (sys.executable, "-c", _FEW_SKIES, str(folder / "skies")),
         made="cache/packs",
         prepare=_linked_sources,
     ),

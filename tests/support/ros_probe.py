@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,9 @@ BEST_EFFORT = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 DISCOVERY_S = 0.2
 """That a server may take to discover a client that has discovered it [s]."""
+
+ANSWER_S = 30.0
+"""That an answer may take [s]."""
 
 
 class Topic:
@@ -76,21 +79,29 @@ class Probe:
 
     def begin(self, kind: Any, service: str, request: Any = None) -> Any:
         """Call a service; return rclpy's future of the answer."""
-        is_new = service not in self._clients
-        if is_new:
-            self._clients[service] = self.node.create_client(kind, service)
+        self.discover({service: kind})
         client = self._clients[service]
         until(client.service_is_ready, f"the service {service}")
-        if is_new:
-            # We know the server now; that it knows us nothing tells. Fast DDS drops an answer
+        return client.call_async(kind.Request() if request is None else request)
+
+    def discover(self, services: Mapping[str, Any]) -> None:
+        """Become known to services, by name with their types; those called before are known."""
+        new = {name: kind for name, kind in services.items() if name not in self._clients}
+        for name, kind in new.items():
+            self._clients[name] = self.node.create_client(kind, name)
+        for name in new:
+            until(self._clients[name].service_is_ready, f"the service {name}")
+        if new:
+            # We know the servers now; that they know us nothing tells. Fast DDS drops an answer
             # after 100 ms to a reader that is not known yet.
             threading.Event().wait(DISCOVERY_S)
-        return client.call_async(kind.Request() if request is None else request)
 
     def call(self, kind: Any, service: str, request: Any = None) -> Any:
         """Call a service and return its answer."""
         future = self.begin(kind, service, request)
-        until(future.done, f"the answer of {service}", 30.0)
+        answered = threading.Event()
+        future.add_done_callback(lambda _: answered.set())
+        assert answered.wait(ANSWER_S), f"{service} did not answer in {ANSWER_S:g} s"
         return future.result()
 
     def done(self, kind: Any, service: str, request: Any = None) -> Any:

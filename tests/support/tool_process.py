@@ -3,24 +3,75 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Mapping, Sequence
 
 from tests.support.waiting import until
+
+SEVERAL = """
+import importlib, json, sys
+main = importlib.import_module(sys.argv[1]).main
+for arguments in json.loads(sys.argv[2]):
+    print("status", main([sys.argv[1], *arguments]), file=sys.stderr, flush=True)
+"""
+"""Runs a node's `main` with one list of arguments after the other."""
+
+
+def run_several(
+    node: str,
+    namespace: str,
+    *settings: Mapping[str, object] | Sequence[str],
+    timeout_s: float = 60.0,
+) -> list[tuple[int, str]]:
+    """Run a node with one set of parameters after the other; return status and log of each.
+
+    All in one process, since to start one takes longer than to refuse parameters. A sequence has
+    arguments for ROS instead.
+    """
+    arguments = [
+        _arguments(namespace, one)
+        if isinstance(one, Mapping)
+        else [*_arguments(namespace, {}), *one]
+        for one in settings
+    ]
+    done = subprocess.run(
+        [sys.executable, "-c", SEVERAL, f"sailenv_ros.ros.nodes.{node}", json.dumps(arguments)],
+        capture_output=True,
+        text=True,
+        timeout=timeout_s,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    parts = re.split(r"^status (\d+)\n", done.stderr, flags=re.MULTILINE)
+    return [(int(status), log) for log, status in zip(parts[::2], parts[1::2], strict=False)]
+
+
+def _arguments(namespace: str, parameters: Mapping[str, object]) -> list[str]:
+    """Return the words that give a node its namespace and parameters."""
+    words = ["--ros-args", "-r", f"__ns:={namespace}"]
+    for name, value in parameters.items():
+        words += ["-p", f"{name}:={json.dumps(value)}"]
+    return words
 
 
 class ToolProcess:
     """A node of this package as a child process; a context manager that ends it."""
 
     def __init__(self, node: str, namespace: str, ready: str, **parameters: object) -> None:
-        words = [sys.executable, "-m", f"sailenv_ros.ros.nodes.{node}", "--ros-args"]
-        words += ["-r", f"__ns:={namespace}"]
-        for name, value in parameters.items():
-            words += ["-p", f"{name}:={json.dumps(value)}"]
         self._process = subprocess.Popen(
-            words, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
+            [
+                sys.executable,
+                "-m",
+                f"sailenv_ros.ros.nodes.{node}",
+                *_arguments(namespace, parameters),
+            ],
+            stderr=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            text=True,
         )
         self.lines: list[str] = []
         self._reader = threading.Thread(target=self._read, daemon=True)

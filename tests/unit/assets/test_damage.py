@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import shutil
-import signal
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -23,8 +20,6 @@ from sailenv_ros.assets.skies import load_sky, sky_files
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import AssetError, UnknownName
-from sailenv_ros.system.files import UNFINISHED
-from tests.support.waiting import until
 
 FURNITURE, SKIES = (fetched(name) for name in ("sweethome3d-furniture", "blender-data"))
 NAMES = ("fork_01", "spoon_01")
@@ -133,57 +128,6 @@ def test_an_empty_object_is_not_up_to_date(pack: Path) -> None:
     assert list(build.damaged_files()) == ["pack.yaml"]
     build.build_standard_pack(jobs=1)
     assert build.is_current()
-
-
-BUILD = """
-import sys
-from sailenv_content.standard import pack_build as build
-from sailenv_ros.assets.recipe import standard_recipe
-sources = dict(zip(("sweethome3d-furniture", "blender-data"), sys.argv[1:]))
-from pathlib import Path
-if __name__ == "__main__":
-    build.fetched = lambda name, **_: Path(sources[name])
-    whole = standard_recipe()
-    few = {name: whole.assets[name] for name in whole.assets if name.endswith("_01")}
-    cheap = sorted(few, key=lambda name: ("spoon" not in name, few[name].collision != "box", name))
-    recipe = whole.model_copy(update={"assets": {name: few[name] for name in cheap}})
-    build.standard_recipe = lambda: recipe
-    build.build_standard_pack(jobs=2, progress=lambda *_: print("one", flush=True))
-"""
-
-
-def test_a_killed_build_leaves_no_process_and_the_next_one_no_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Workers end with their parent; the next build removes what was half done."""
-    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
-    script = tmp_path / "killed.py"
-    script.write_text(BUILD)
-    with subprocess.Popen(
-        [sys.executable, str(script), str(FURNITURE), str(SKIES)],
-        stdout=subprocess.PIPE,
-        start_new_session=True,
-    ) as process:
-        assert process.stdout is not None
-        assert process.stdout.readline() == b"one\n"
-        os.kill(process.pid, signal.SIGKILL)
-        process.wait(10)
-    group = process.pid
-    until(lambda: not _lives(group), "the end of all its processes")
-    packs = standard_pack_folder().parent
-    assert list(packs.glob(f".*{UNFINISHED}"))
-    use(tmp_path / "cache", monkeypatch)
-    build.build_standard_pack(jobs=1)
-    assert [path.name for path in packs.iterdir()] == ["standard"]
-
-
-def _lives(group: int) -> bool:
-    try:
-        os.killpg(group, 0)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 def test_sources_that_were_downloaded_are_checked(

@@ -151,28 +151,6 @@ def test_a_limit_makes_the_first_shards_and_the_rest_later(small: Path, tmp_path
 
 
 @pytest.mark.timeout(400)
-def test_a_killed_run_loses_unfinished_shards_alone(small: Path, tmp_path: Path) -> None:
-    """kill -9 in the middle; the same command ends with the same bytes."""
-    folder = tmp_path / "killed"
-    command = [
-        sys.executable, "-m", "sailenv_ros.cli.main", "dataset", "make",
-        str(small.parent / "small.yaml"), "-o", str(folder), "--workers", "2",
-    ]  # fmt: skip
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    running = subprocess.Popen(
-        command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
-    try:
-        until(lambda: list(folder.glob("shards/*.json")), "the first shard", 120.0)
-    finally:
-        running.send_signal(signal.SIGKILL)
-        running.wait(10.0)
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    assert "42 frames in 4 shards" in done.stdout
-    assert contents(folder) == contents(small)
-
-
-@pytest.mark.timeout(400)
 def test_ctrl_c_is_quick_and_leaves_nothing_among_temporary_files(
     small: Path, tmp_path: Path
 ) -> None:

@@ -267,13 +267,13 @@ def make_stream(folder: Path) -> None:
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("work", [make_parts, write_dataset, make_stream])
 def test_what_was_killed_at_any_call_ends_as_if_it_was_not(
-    work: Callable[[Path], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    work: Callable[[Path], None], memory_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`kill -9` at each call to the disk; the same call then ends with the same files alone."""
     monkeypatch.setattr(journal, "FRAMES_PER_NOTE", 2)
-    work(tmp_path / "whole")
-    wanted = contents(tmp_path / "whole")
-    folder = tmp_path / "killed"
+    work(memory_folder / "whole")
+    wanted = contents(memory_folder / "whole")
+    folder = memory_folder / "killed"
     call = 1
     while killed_at(call, folder, lambda: work(folder)):
         work(folder)

@@ -22,13 +22,19 @@ SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FLAGS = (*SANITIZERS, "-O1", "-g1", "-fno-omit-frame-pointer")
 
 
-def test_no_sanitizer_complains(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def objects(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of object files, so that the second build compiles what differs alone."""
+    return tmp_path_factory.mktemp("objects")
+
+
+def test_no_sanitizer_complains(tmp_path: Path, objects: Path) -> None:
     """Of addresses and of undefined behaviour, on every instruction set that this machine has."""
-    done = _driven(tmp_path, SOURCES)
+    done = _driven(tmp_path, SOURCES, objects)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_the_sanitizers_would_complain(tmp_path: Path) -> None:
+def test_the_sanitizers_would_complain(tmp_path: Path, objects: Path) -> None:
     """A kernel that writes one number too far is found: the test above can fail."""
     sources = tmp_path / "src"
     (sources / "kernels").mkdir(parents=True)
@@ -38,7 +44,7 @@ def test_the_sanitizers_would_complain(tmp_path: Path) -> None:
     wrong = text.replace("counts[row]++", "counts[row + 1]++")
     assert wrong != text
     (sources / "kernels" / "self_test.cpp").write_text(wrong)
-    done = _driven(tmp_path, sources)
+    done = _driven(tmp_path, sources, objects)
     assert done.returncode != 0
     assert "heap-buffer-overflow" in done.stderr
     assert "self_test.cpp" in done.stderr
@@ -64,11 +70,12 @@ def test_threads_of_the_pool_do_not_race(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr[:6000]
 
 
-def _driven(folder: Path, sources: Path) -> subprocess.CompletedProcess[str]:
+def _driven(folder: Path, sources: Path, objects: Path) -> subprocess.CompletedProcess[str]:
     """Run the drivers against a build with sanitizers."""
     output = folder / native_compile.LIBRARY_NAME
     native_compile.compile_library(
         output,
+        objects=objects,
         sources=sources,
         sets=load_library().instruction_sets,
         extra_flags=FLAGS,

@@ -302,9 +302,9 @@ ACTIONS = {
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(memory_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder that everything is written to."""
-    home = tmp_path / "home"
+    home = memory_folder / "home"
     (home / "tmp").mkdir(parents=True)
     monkeypatch.setenv("SAILENV_CACHE", str(home / "cache"))
     monkeypatch.setenv("XDG_DATA_HOME", str(home / "data"))
@@ -329,11 +329,11 @@ def run(action: Action, folder: Path, fail_at: int, kind: Kind) -> tuple[FaultyD
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("what", ACTIONS)
-def test_each_call_may_fail(folder: Path, tmp_path: Path, what: str, kind: Kind) -> None:
+def test_each_call_may_fail(folder: Path, memory_folder: Path, what: str, kind: Kind) -> None:
     """A sentence, nothing half written, and the next attempt succeeds."""
     action = ACTIONS[what]
     action.before(folder)
-    start = tmp_path / "start"
+    start = memory_folder / "start"
     shutil.copytree(folder, start)
     fail_at = 0
     while True:
@@ -359,11 +359,11 @@ def test_each_call_may_fail(folder: Path, tmp_path: Path, what: str, kind: Kind)
              "a result", "a recording", "a part of a work", "a note of a work",
              "the end of a work"],
 )  # fmt: skip
-def test_power_may_be_lost_at_any_time(folder: Path, tmp_path: Path, what: str) -> None:
+def test_power_may_be_lost_at_any_time(folder: Path, memory_folder: Path, what: str) -> None:
     """Whatever of the unsynced bytes and names is on the disk; what returned is there for good."""
     action = ACTIONS[what]
     action.before(folder)
-    start = tmp_path / "start"
+    start = memory_folder / "start"
     shutil.copytree(folder, start)
     disk, done, result = run(action, folder, 0, "full")
     assert done

@@ -13,6 +13,7 @@ from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import behaviour_errors
+from sailenv_ros.errors import SceneError
 from sailenv_ros.scene import SceneCatalogue, SceneKnowledge, SceneSpec, load_scene
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, interpolate
@@ -37,18 +38,21 @@ def test_the_package_has_these_scenes() -> None:
     assert set(NAMES) <= set(SceneCatalogue().names)
 
 
-@pytest.mark.parametrize("name", SceneCatalogue().names)
-def test_a_scene_of_the_package_has_no_fault(name: str) -> None:
-    spec = _load(name)
-    assert spec.name == name
-    assert spec.title
-    assert spec.description
-
-
-@pytest.mark.parametrize("name", SceneCatalogue().names)
-def test_editors_are_told_the_schema(name: str) -> None:
-    first = SceneCatalogue().path(name).read_text(encoding="utf-8").partition("\n")[0]
-    assert first == "# yaml-language-server: $schema=scene.schema.json"
+def test_scenes_of_the_package_have_no_fault() -> None:
+    """They load, say what they are, and name the schema for editors in their first line."""
+    faults = {}
+    for name in SceneCatalogue().names:
+        first = SceneCatalogue().path(name).read_text(encoding="utf-8").partition("\n")[0]
+        try:
+            spec = _load(name)
+        except SceneError as problem:
+            faults[name] = str(problem)
+            continue
+        if first != "# yaml-language-server: $schema=scene.schema.json":
+            faults[name] = first
+        if not (spec.name == name and spec.title and spec.description):
+            faults[name] = f"{spec.name!r} has title {spec.title!r}, {spec.description!r}"
+    assert faults == {}
 
 
 def test_optical_is_rotating_cubes_of_one_colour_and_a_cylinder_above_a_plane() -> None:

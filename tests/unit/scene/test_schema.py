@@ -59,13 +59,16 @@ def test_the_schema_is_a_schema() -> None:
     jsonschema.Draft7Validator.check_schema(scene_schema(BEHAVIOURS))
 
 
-@pytest.mark.parametrize("name", SceneCatalogue().names)
-def test_the_package_s_scenes_fit_it(name: str) -> None:
-    # Not PyYAML's own reader: to it, the key `on` is true (YAML 1.1).
-    node, diagnostics = compose(SceneCatalogue().path(name).read_text(encoding="utf-8"))
-    assert node is not None
-    assert not diagnostics
-    _validator(BEHAVIOURS).validate(node.plain())
+def test_the_package_s_scenes_fit_it() -> None:
+    validator, faults = _validator(BEHAVIOURS), {}
+    for name in SceneCatalogue().names:
+        # Not PyYAML's own reader: to it, the key `on` is true (YAML 1.1).
+        node, diagnostics = compose(SceneCatalogue().path(name).read_text(encoding="utf-8"))
+        assert node is not None
+        assert not diagnostics
+        if found := [error.message for error in validator.iter_errors(node.plain())]:
+            faults[name] = found
+    assert faults == {}
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import yaml
 
-from sailenv_content.generation.checks import look_backend
+from sailenv_content.generation.checks import look_backend, unseen
 from sailenv_content.generation.generator import GeneratedScene, Generator
 from sailenv_content.generation.room_agents import StandingWorld
 from sailenv_ros.authoring.room_rules.rule_files import Rules, room_kinds
@@ -18,6 +18,9 @@ from sailenv_ros.authoring.viewpoints.room_view import view_score
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.space_queries import solids_of_world
+from sailenv_ros.space.free_space import BodySize
+from sailenv_ros.space.grid import map_free_space
 from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
 from sailenv_ros.world.world import World
 
@@ -83,6 +86,56 @@ def test_nothing_intersects_nothing_is_in_the_way_and_all_stands(world: World) -
     assert list(overlaps(world)) == []
     assert list(obstructions(world)) == []
     assert list(shifts(world, distance_m=0.005)) == []
+
+
+def test_one_can_walk_between_all_doors(scene: GeneratedScene, world: World) -> None:
+    """With shoulders 50 cm wide, by the shapes of physics: a judge without a floor plan."""
+    body = BodySize(height_m=1.8, radius_m=0.25, resolution_m=0.02)
+    space = map_free_space(solids_of_world(world), body)
+    places = list(before_doors(scene.spec))
+    assert places
+    for place in places[1:]:
+        assert space.reachable(places[0], place)
+
+
+def before_doors(spec: SceneSpec) -> Iterator[tuple[float, float]]:
+    """Yield a place before each door, and on both sides of each doorway [m]."""
+    assert spec.room is not None
+    x, y, _ = spec.room.size
+    for opening in spec.room.openings:
+        if opening.type == "door":
+            away, at = 0.5, opening.at
+            yield {
+                "north": (at, y / 2 - away),
+                "east": (x / 2 - away, at),
+                "south": (at, away - y / 2),
+                "west": (away - x / 2, at),
+            }[opening.wall]
+    for wall in spec.room.partitions:
+        (x0, y0), (x1, y1) = wall.start, wall.end
+        for doorway in wall.doorways:
+            for side in (-0.5, 0.5):
+                if x0 == x1:
+                    yield x0 + side, (y0 + y1) / 2 + doorway.at
+                else:
+                    yield (x0 + x1) / 2 + doorway.at, y0 + side
+
+
+@pytest.mark.parametrize("room", [("bedroom", 1), ("kitchen", 2), ("apartment", 1)])
+def test_every_object_is_seen_from_the_way(
+    room: tuple[str, int], made: Made, library: SceneLibrary, tmp_path: Path
+) -> None:
+    """Of the file that was written, from waypoints and from amidst them."""
+    (tmp_path / "room.yaml").write_text(made[room].text)
+    mover = made[room].spec.mover
+    assert mover is not None
+    places = np.array([waypoint.position for waypoint in mover.waypoints])
+    eyes = [*places, *(places + np.roll(places, -1, axis=0)) / 2.0]
+    with (
+        closing(library.build(tmp_path / "room.yaml")) as world,
+        closing(look_backend()) as backend,
+    ):
+        assert list(unseen(world, [tuple(eye) for eye in eyes], backend)) == []
 
 
 def test_its_file_is_read_as_the_same_scene(
