@@ -83,6 +83,7 @@ DEV = [
     "mkdocs-material>=9.5",
     "mkdocstrings[python]>=0.26",
     "clang-format>=18",
+    "clang-tidy>=18",
     "colcon-common-extensions",
     # Another ray tracer, which tests hold what is seen against.
     "embreex>=4.4.0",

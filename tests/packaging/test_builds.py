@@ -26,7 +26,7 @@ BOOTSTRAPPED = ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
 FETCH = """
 set -e
 eval "$("$0" "$1/scripts/uv_settings.py")"
-"$0" "$1/scripts/requirements.py" ros > needed.txt
+(cd "$1" && "$0" scripts/requirements.py ros) > needed.txt
 "$(dirname "$0")/uv" pip install --python "$2" --constraint "$1/constraints.txt" -r needed.txt
 """
 """Fetches what is required as scripts/setup does, much faster than pip, which then finds it."""

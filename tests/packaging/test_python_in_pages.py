@@ -123,7 +123,9 @@ def check_fragment(code: str) -> None:
     for node in ast.walk(ast.parse(code)):
         if isinstance(node, ast.ImportFrom) and str(node.module).startswith("sailenv_"):
             module = importlib.import_module(str(node.module))
-            assert [alias.name for alias in node.names if not hasattr(module, alias.name)] == []
+            for alias in node.names:  # a name of the module, or a module below it
+                if not hasattr(module, alias.name):
+                    importlib.import_module(f"{node.module}.{alias.name}")
     for call, name, attribute in calls(code):
         for kind in CLASSES[name]:
             check(call, getattr(kind, attribute))

@@ -87,7 +87,7 @@ LANES_INLINE f8 arriving_factors(const SampleRows& rows, int64_t column, const f
         const f8 off = abs8(load_twice(rows.inverse[row] + at)) * z - 1.0f;
         const i8 found = missing & (abs8(off) <= same_surface);
         const uint8_t* bytes = rows.visibility[row] + at;
-        const f8 four = {float(bytes[0]), float(bytes[1]), float(bytes[2]), float(bytes[3])};
+        f8 four = {float(bytes[0]), float(bytes[1]), float(bytes[2]), float(bytes[3])};
         visibility = found ? SHUFFLE(four, four, 0, 0, 1, 1, 2, 2, 3, 3) : visibility;
         missing = missing & ~found;
         if (!any(missing)) break;

@@ -120,7 +120,8 @@ void draw_object(const Projection& canvas, const Scratch& shared, const Instance
     set_box(whole, result + 2);
     set_box(seen, result + 6);
     if (seen.empty()) return;
-    crop.reserve(static_cast<size_t>((seen.x1 - seen.x0 + 1) * (seen.y1 - seen.y0 + 1)));
+    crop.reserve(static_cast<size_t>(seen.x1 - seen.x0 + 1) *
+                 static_cast<size_t>(seen.y1 - seen.y0 + 1));
     for (int32_t y = seen.y0; y <= seen.y1; y++) {
         const float* row = pixels + (y - reach.y0) * stride - reach.x0;
         for (int32_t x = seen.x0; x <= seen.x1; x++) {

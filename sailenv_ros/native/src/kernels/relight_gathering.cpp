@@ -183,7 +183,7 @@ SAILENV_KERNEL(gather_probe_change)
     const RayScene& s = *scene;
     if (count < 0 || rays < 1 || !sound(s)) return STATUS_INVALID_ARGUMENT;
     const float each = 1.0f / static_cast<float>(rays);
-    const size_t row = static_cast<size_t>(4 * s.channels);
+    const size_t row = 4 * static_cast<size_t>(s.channels);
     parallel_for(threads, count, 8, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t k = first; k < last; k++) {
             memset(far + k * 4 * s.channels, 0, row * sizeof(float));
