@@ -189,7 +189,10 @@ def _sees_ahead_alone(rays: Doubles) -> bool:
 def _faces_of(rays: Doubles) -> NDArray[np.uint8]:
     x, y, z = np.moveaxis(rays, -1, 0)
     along = np.stack([z, x, -x, y, -y, -z])
-    return np.argmax(np.where(np.isnan(along), -np.inf, along), axis=0).astype(np.uint8)
+    faces: NDArray[np.uint8] = np.argmax(np.where(np.isnan(along), -np.inf, along), axis=0).astype(
+        np.uint8
+    )
+    return faces
 
 
 def _places(rays: Doubles, face: int) -> tuple[Doubles, Doubles]:
