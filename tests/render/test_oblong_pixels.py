@@ -5,6 +5,8 @@ Corners and focal lengths are sums of few powers of 2, as in `test_off_centre`.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -59,7 +61,7 @@ def test_objects_alone_have_every_second_row_too() -> None:
         {"max_angle_deg": 40.0},
     ],
 )
-def test_what_cannot_be_drawn_through_is_refused(render: Render, lens: dict[str, object]) -> None:
+def test_what_cannot_be_drawn_through_is_refused(render: Render, lens: dict[str, Any]) -> None:
     """A lens that bends lines, and one whose image circle ends: in one sentence."""
     now = snapshot_of(crowd())
     accepted = "distortion_model must be 'pinhole' without max_angle_deg, since renderers know"

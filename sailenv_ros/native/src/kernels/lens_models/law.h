@@ -63,7 +63,7 @@ inline bool increasing_root(double goal, double most, const Function& function, 
         if (!(next >= low && next <= high)) next = 0.5 * (low + high);
         const double moved = std::fabs(next - t);
         t = next;
-        if (moved <= 1e-16 * (1.0 + t)) break;
+        if (moved <= 4e-16 * (1.0 + t)) break;
     }
     return true;
 }
