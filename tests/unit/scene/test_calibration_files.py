@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sailenv_ros.cli.main import main
 from sailenv_ros.errors import SceneError, UnknownName
 from sailenv_ros.scene.calibration_files import load_calibration
+from sailenv_ros.scene.loader import load_scene
 
 CAMERA_INFO = """\
 image_width: 640
@@ -214,6 +216,19 @@ def test_which_camera_is_meant_must_be_said(
     """Where a file has several, and where it has no such one: those that there are are named."""
     with pytest.raises(UnknownName, match="camera must be one of: "):
         load_calibration(_written(tmp_path, name, text), camera=camera)
+
+
+def test_a_calibration_becomes_keys_of_a_scene_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Printed by the command, read as a scene: the same lens, to the last bit."""
+    path = _written(tmp_path, "camchain.yaml", CAMCHAIN)
+    assert main(["scene", "lens", str(path), "--camera", "cam1", "--max-angle", "70"]) == 0
+    keys = "".join(f"  {line}\n" for line in capsys.readouterr().out.splitlines())
+    scene = f"version: 1\nagents:\n- name: eye\n{keys}"
+    (agent,) = load_scene(_written(tmp_path, "room.yaml", scene)).agents
+    expected = load_calibration(path, camera="cam1", max_angle_deg=70.0)
+    assert agent.to_agent_spec().intrinsics == expected
 
 
 def test_a_file_that_is_not_there_says_so(tmp_path: Path) -> None:

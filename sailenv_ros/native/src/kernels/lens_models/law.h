@@ -34,6 +34,10 @@ struct Reach {
     bool folds;
 };
 
+// A step of Newton's after which the next one would be below the rounding: its error is about the
+// square of the step.
+constexpr double LAST_STEP = 1e-10;
+
 struct LensLaw {
     int64_t model;
     double limit;   // largest angle from the axis [rad], at most Reach::angle
@@ -60,10 +64,11 @@ inline bool increasing_root(double goal, double most, const Function& function, 
         function(t, value, slope);
         (value > goal ? high : low) = t;
         double next = t - (value - goal) / slope;
-        if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+        const bool is_newton = next >= low && next <= high;
+        if (!is_newton) next = 0.5 * (low + high);
         const double moved = std::fabs(next - t);
         t = next;
-        if (moved <= 4e-16 * (1.0 + t)) break;
+        if (moved <= (is_newton ? LAST_STEP : 1e-16) * (1.0 + t)) break;
     }
     return true;
 }
