@@ -15,11 +15,12 @@ from sailenv_ros.errors import InvalidRequest, SceneDiagnostic, SceneError, Unkn
 from sailenv_ros.scene.documents import text_of_file
 from sailenv_ros.scene.messages import shown
 from sailenv_ros.scene.yaml_nodes import Loc, Mark, Node, compose
-from sailenv_ros.types.camera import CameraIntrinsics
-from sailenv_ros.types.validation import is_finite_number, is_integer
+from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
+from sailenv_ros.types.validation import is_finite_number
 
 __all__ = ["load_calibration"]
 
+_SIZE = INTRINSICS_LIMITS["width"]
 _MATRIX_NUMBERS = 9
 _PLUMB_BOB = "plumb_bob"
 
@@ -144,10 +145,11 @@ class _File:
         return [float(value) for value in values]
 
     def size(self, loc: Loc) -> int:
-        """Return an integer."""
+        """Return a width or a height."""
         node = self.at(*loc)
-        if not is_integer(node.value):
-            self.refuse(node.mark, f"must be an integer, got {shown(node.plain())}", _dotted(loc))
+        accepted = _SIZE.refused(node.value)
+        if accepted:
+            self.refuse(node.mark, f"must be {accepted}, got {shown(node.plain())}", _dotted(loc))
         return int(node.value)
 
     def word(self, loc: Loc, known: Sequence[str]) -> str:
@@ -196,7 +198,10 @@ def _of_camera_info(
     accepted = "nine numbers [fx, 0, cx, 0, fy, cy, 0, 0, 1]"
     k = file.numbers(("camera_matrix", "data"), accepted, (_MATRIX_NUMBERS,))
     model_node = file.at("distortion_model")
-    model = str(model_node.value)
+    if not isinstance(model_node.value, str):
+        got = shown(model_node.plain())
+        file.refuse(model_node.mark, f"must be the name of a model, got {got}", "distortion_model")
+    model = model_node.value
     coefficients = file.numbers(("distortion_coefficients", "data"), "numbers")
     if model == _PLUMB_BOB and not any(coefficients):
         model, coefficients = "pinhole", []
@@ -280,8 +285,10 @@ def _of_colmap(
     if len(parameters) != len(names):
         accepted = f"must be {len(names)} parameters of {words[1]}: {order}"
         file.refuse(mark(min(4, len(words))), f"{accepted}; got {len(parameters)}")
-    if not (width.is_integer() and height.is_integer()):
-        file.refuse(mark(2), f"must be the size in whole pixels, got {words[2]} {words[3]}")
+    for index, side in ((2, width), (3, height)):
+        accepted = _SIZE.refused(int(side) if side.is_integer() else side)
+        if accepted:
+            file.refuse(mark(index), f"must be {accepted}, got {shown(words[index])}")
     told = dict(zip(names, parameters, strict=True))
     focal = {"fx": told["f"], "fy": told["f"]} if "f" in told else told
     matrix = {

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from sailenv_ros.cli.main import main
-from sailenv_ros.errors import SceneError, UnknownName
+from sailenv_ros.errors import SailenvError, SceneError, UnknownName
 from sailenv_ros.scene.calibration_files import load_calibration
 from sailenv_ros.scene.loader import load_scene
 
@@ -162,7 +165,11 @@ BAD = [
         CAMERA_INFO.replace("-0.28, 0.09", "-3.5, 0.0"),
         "8:19: makes no lens: distortion must be coefficients that do not fold within the picture",
     ),
-    ("a.yaml", CAMERA_INFO.replace("640", "wide"), "1:14: image_width: must be an integer, got"),
+    (
+        "a.yaml",
+        CAMERA_INFO.replace("640", "wide"),
+        "1:14: image_width: must be an integer from 8 to 4096 [px], got",
+    ),
     ("a.yaml", "a: !!python/object:os.system [ls]\n", "1:4: tags such as"),
     ("a.yaml", "- 1\n", "1:1: must be a mapping: camera_info or Kalibr's camchain"),
     ("a.yaml", "a: 1\n", "1:1: has neither camera_matrix (of a camera_info) nor a camera"),
@@ -180,7 +187,7 @@ BAD = [
         "1:19: must be 4 parameters of PINHOLE: fx fy cx cy; got 3",
     ),
     ("cameras.txt", "1 PINHOLE 640\n", "1:14: must be CAMERA_ID MODEL WIDTH HEIGHT PARAMS..."),
-    ("cameras.txt", "1 PINHOLE 64.5 48 9 9 3 3\n", "1:11: must be the size in whole pixels"),
+    ("cameras.txt", "1 PINHOLE 64.5 48 9 9 3 3\n", "1:11: must be an integer from 8 to 4096 [px]"),
     (
         "cameras.txt",
         "1 PINHOLE 640 480 0 0 320 240\n",
@@ -198,6 +205,49 @@ def test_what_is_no_calibration_is_refused_at_its_place(
     with pytest.raises(SceneError) as caught:
         load_calibration(path)
     assert str(caught.value).startswith(f"{path}:{sentence}")
+
+
+PIECES = st.sampled_from(
+    [
+        "nan",
+        "-1",
+        "0",
+        "1" + "0" * 400,
+        ".inf",
+        "[]",
+        "{}",
+        "&a",
+        "*a",
+        "\n",
+        ":",
+        "x",
+        "1e-9",
+        "\x00",
+    ]
+)
+
+
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.sampled_from([("a.yaml", CAMERA_INFO), ("a.yaml", CAMCHAIN), ("cameras.txt", COLMAP)]),
+    st.lists(st.tuples(st.floats(0.0, 1.0), st.integers(0, 12), PIECES), min_size=1, max_size=4),
+    st.sampled_from([None, "cam0", "cam1", "cam2", "1", "5"]),
+)
+def test_a_damaged_file_is_read_or_refused_in_words(
+    tmp_path: Path,
+    given_file: tuple[str, str],
+    changes: list[tuple[float, int, str]],
+    camera: str | None,
+) -> None:
+    """Whatever stands in it, no other error than ours comes of it."""
+    name, text = given_file
+    for share, length, piece in changes:
+        at = int(share * len(text))
+        text = text[:at] + piece + text[at + length :]
+    path = _written(tmp_path, name, text)
+    with contextlib.suppress(SailenvError):
+        lens = load_calibration(path, camera=camera)
+        assert lens.fx > 0.0
 
 
 @pytest.mark.parametrize(
