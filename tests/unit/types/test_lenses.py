@@ -342,6 +342,9 @@ def test_wide_lenses_see_behind_themselves() -> None:
         # With alpha of 0.5 and xi of 0: half of what the unified model sees.
         ("double_sphere", (0.0, 0.5), 180.0),
         ("double_sphere", (0.0, 0.0), 90.0),
+        # Of one sphere alone the second centre sees half of it.
+        ("double_sphere", (-0.5, 0.0), 60.0),
+        ("double_sphere", (0.5, 1.0), 120.0),
     ],
 )
 def test_a_law_ends_where_arithmetic_says(
