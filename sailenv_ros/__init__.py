@@ -1,8 +1,9 @@
 """A virtual visual environment: furnished, simulated rooms with exact per-pixel ground truth.
 
 `Simulation` is the simulator in this process, without ROS. `Agent` is a camera in a simulator that
-runs as a ROS 2 node. `load_scene` reads a scene file, `show` shows a frame. They are imported when
-they are first used, so importing the package imports neither ROS nor OpenGL.
+runs as a ROS 2 node. `load_scene` reads a scene file, `load_calibration` the lens of a
+real camera, `show` shows a frame. They are imported when they are first used, so importing the
+package imports neither ROS nor OpenGL.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from sailenv_ros.frame.frame import Frame
     from sailenv_ros.frame.show import show
     from sailenv_ros.ros.client.agent import Agent
+    from sailenv_ros.scene.calibration_files import load_calibration
     from sailenv_ros.scene.loader import load_scene
     from sailenv_ros.simulation import Simulation
     from sailenv_ros.types.agents import AgentSpec
@@ -34,6 +36,7 @@ __all__ = [
     "Pose",
     "Simulation",
     "__version__",
+    "load_calibration",
     "load_scene",
     "look_at",
     "show",
@@ -47,6 +50,7 @@ _HOMES = {
     "Frame": "sailenv_ros.frame.frame",
     "Pose": "sailenv_ros.types.geometry",
     "Simulation": "sailenv_ros.simulation",
+    "load_calibration": "sailenv_ros.scene.calibration_files",
     "load_scene": "sailenv_ros.scene.loader",
     "look_at": "sailenv_ros.types.geometry",
     "show": "sailenv_ros.frame.show",

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.behaviours import behaviour_kinds
-from sailenv_ros.cli import scene_bake, scene_generate, scene_import, scene_render
+from sailenv_ros.cli import scene_bake, scene_generate, scene_import, scene_lens, scene_render
 from sailenv_ros.cli.arguments import add_allow_modules
 from sailenv_ros.errors import AssetError, InvalidRequest, SceneError, UnknownName
 from sailenv_ros.scene.loader import load_scene
@@ -59,6 +59,9 @@ def add_parser(subparsers: Any) -> None:
     scene_generate.add_arguments(
         actions.add_parser("generate", help="make a furnished room from a seed")
     )
+    scene_lens.add_arguments(
+        actions.add_parser("lens", help="print the keys of a camera that a calibration is of")
+    )
     new = actions.add_parser("new", help="write a commented scene to begin with")
     new.add_argument("file", type=Path, metavar="FILE", help="where to; must not exist")
     schema = actions.add_parser("schema", help="write the JSON Schema that editors complete by")
@@ -87,6 +90,8 @@ def run(args: argparse.Namespace) -> int:
         return scene_import.import_file(args)
     if args.action == "generate":
         return scene_generate.generate(args)
+    if args.action == "lens":
+        return scene_lens.show_lens(args)
     if args.action == "new":
         return _new(args.file)
     return _schema(args.output, check=args.check)

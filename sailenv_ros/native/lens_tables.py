@@ -13,6 +13,7 @@ __all__ = [
     "CUBE_FACES",
     "FACE_CELLS",
     "FACE_NODE",
+    "LENS_RUN_TILES",
     "LENS_TABLE",
     "LENS_TILE",
     "LENS_TILE_SHAPE",
@@ -23,6 +24,9 @@ CUBE_FACES = 6
 FACE_CELLS, BLOCK_CELLS = 128, 8
 LENS_TILE_SHAPE = 8, 8
 """Rows and columns of a tile."""
+
+LENS_RUN_TILES = 16
+"""Tiles side by side whose bounds are told together."""
 
 UNKNOWN_BEND = 1e30
 
@@ -39,6 +43,6 @@ CUBE_FACE = structure(
 LENS_TILE = structure(("low high", "<f4", 2), ("faces", "<i4"))
 
 LENS_TABLE = structure(
-    ("x_at y_at face_at steps_at tiles_at faces_at", ADDRESS),
-    ("stride tile_columns rows columns step_stride step_rows several fine", "<i8"),
+    ("x_at y_at face_at steps_at tiles_at tile_runs_at faces_at", ADDRESS),
+    ("stride tile_columns run_columns rows columns step_stride step_rows several fine", "<i8"),
 )

@@ -23,6 +23,7 @@ from sailenv_ros.scene.spec_surroundings import (
     SpotLightSpec,
 )
 from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, quat_xyzw_from_rpy_deg
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.look_at import LookAt
@@ -36,6 +37,7 @@ __all__ = [
     "agent_entry",
     "body_entry",
     "changed_light_entry",
+    "lens_entry",
     "light_entry",
     "look_at_entry",
     "pose_entry",
@@ -118,7 +120,6 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
         Where it stands; None for one that starts at its mover.
     """
     values = {
-        **{intrinsics_key(name): value for name, value in spec.intrinsics.arguments().items()},
         "depth_range": spec.depth_range_m,
         "rate": spec.rate_hz,
         "views": spec.views,
@@ -126,7 +127,7 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
     }
     defaults = AgentSpecModel.model_fields
     given = {key: value for key, value in values.items() if value != defaults[key].default}
-    entry: dict[str, Any] = {"name": spec.name, **_plain(given)}
+    entry: dict[str, Any] = {"name": spec.name, **lens_entry(spec.intrinsics), **_plain(given)}
     if spec.picture != PictureSettings():
         entry["picture"] = _picture(spec.picture)
     if spec.mover:
@@ -134,6 +135,13 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
     if spec.look_at is not None:
         entry["keep_looking_at"] = look_at_entry(spec.look_at)
     return entry if pose is None else {**entry, **pose_entry(pose)}
+
+
+def lens_entry(lens: CameraIntrinsics) -> dict[str, Any]:
+    """Return the keys of a camera's size, lens and clip distances that differ from the defaults."""
+    defaults = AgentSpecModel.model_fields
+    values = {intrinsics_key(name): value for name, value in lens.arguments().items()}
+    return _plain({key: value for key, value in values.items() if value != defaults[key].default})
 
 
 def look_at_entry(look_at: LookAt) -> dict[str, Any]:

@@ -59,7 +59,7 @@ def _makes_a_lens(entry: Mapping[str, Any]) -> Faults:
     except InvalidRequest as problem:
         key = intrinsics_key(problem.what)
         accepted = problem.accepted.replace("max_angle_deg", intrinsics_key("max_angle_deg"))
-        sentence = f"must be {accepted}, got {shown(problem.got)}"
+        sentence = f"must be {accepted}, got {shown(entry.get(key, problem.got))}"
         if key in entry:
             yield (key,), sentence
         else:

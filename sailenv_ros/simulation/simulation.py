@@ -77,6 +77,8 @@ class Simulation(ListenedSimulation):
     width, height : int or None
         Size of the frames [px] of an agent to begin with, which is called ``own`` and follows the
         scene's mover: the quick way to say `agent`. None means 640 and 480.
+    intrinsics : CameraIntrinsics or None
+        Size and lens of that agent instead, such as `load_calibration` reads.
     views : str or iterable of str
         More views of that agent than the usual five.
 
@@ -107,11 +109,12 @@ class Simulation(ListenedSimulation):
         agent: AgentSpec | None = None,
         width: int | None = None,
         height: int | None = None,
+        intrinsics: CameraIntrinsics | None = None,
         views: Views = (),
     ) -> None:
         Clock(mode, real_time_factor, paused=paused)  # refuses what a loop cannot begin with
         checked_light(light)
-        agent = _own_agent(agent, width, height, listed_views(views))
+        agent = _own_agent(agent, width, height, intrinsics, listed_views(views))
         super().__init__(SimulationLoop())
         loop = self._loop
         self._own_agent = None if agent is None else agent.name
@@ -298,18 +301,28 @@ class Simulation(ListenedSimulation):
 
 
 def _own_agent(
-    agent: AgentSpec | None, width: int | None, height: int | None, views: tuple[str, ...]
+    agent: AgentSpec | None,
+    width: int | None,
+    height: int | None,
+    intrinsics: CameraIntrinsics | None,
+    views: tuple[str, ...],
 ) -> AgentSpec | None:
     """Return the agent to begin with, if there is to be one: as it is given, or by its size."""
-    if width is None and height is None and not views:
+    sizes: dict[str, Any] = {
+        k: v for k, v in (("width", width), ("height", height)) if v is not None
+    }
+    if not sizes and intrinsics is None and not views:
         return agent
     if agent is not None:
-        accepted = "left out where width, height or views are given: they describe an agent"
+        accepted = (
+            "left out where width, height, intrinsics or views are given: they describe an agent"
+        )
         raise InvalidRequest("agent", agent.name, accepted)
-    sizes = {"width": width, "height": height}
+    if intrinsics is not None and sizes:
+        raise InvalidRequest("width and height", sizes, "left out where intrinsics are given")
     return AgentSpec(
         name="own",
-        intrinsics=CameraIntrinsics(**{k: v for k, v in sizes.items() if v is not None}),
+        intrinsics=CameraIntrinsics(**sizes) if intrinsics is None else intrinsics,
         rate_hz=0.0,
         views=checked_views((*FIVE_VIEWS, *views)),
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -211,7 +212,8 @@ class CameraIntrinsics(LensParameters):
         """
         u, v = np.arange(self.width)[columns], np.arange(self.height)[rows]
         if not self.is_pinhole:
-            return self.rays_through(np.stack(np.meshgrid(u, v), axis=-1))
+            places = np.stack(np.meshgrid(u, v), axis=-1).astype(np.float64)
+            return self._at_depth_one(self._pixel_rays[rows, columns].copy(), places)
         result = np.ones((len(v), len(u), 3))
         result[..., 0] = (u - self.cx) / self.fx
         result[..., 1] = ((v - self.cy) / self.fy)[:, None]
@@ -232,7 +234,7 @@ class CameraIntrinsics(LensParameters):
         """
         p = np.asarray(pixels, dtype=np.float64)
         if not self.is_pinhole:
-            return self._at_depth_one(p)
+            return self._at_depth_one(self.unit_rays_through(p), p)
         result = np.ones((*p.shape[:-1], 3))
         result[..., 0] = (p[..., 0] - self.cx) / self.fx
         result[..., 1] = (p[..., 1] - self.cy) / self.fy
@@ -254,15 +256,14 @@ class CameraIntrinsics(LensParameters):
         return self.law.unproject(self.in_plane(np.asarray(pixels, np.float64)))
 
     def unit_rays(self) -> NDArray[np.float64]:
-        """Return (H, W, 3) float64: the direction in which each pixel's centre sees."""
-        u, v = np.arange(self.width), np.arange(self.height)
-        return self.unit_rays_through(np.stack(np.meshgrid(u, v), axis=-1))
+        """Return (H, W, 3): the direction in which each pixel's centre sees; a new array."""
+        return self._pixel_rays.copy()
 
     def valid_pixels(self) -> NDArray[np.bool_]:
         """Return (H, W): True where a pixel's centre sees something; a new array."""
         if self.is_pinhole:
             return np.ones((self.height, self.width), np.bool_)
-        return np.isfinite(self.unit_rays()[..., 2])
+        return np.isfinite(self._pixel_rays[..., 2])
 
     def unproject(self, depth: NDArray[np.float32]) -> NDArray[np.float64]:
         """Turn a depth picture into points.
@@ -313,8 +314,17 @@ class CameraIntrinsics(LensParameters):
             points[..., :2] = np.where(np.isnan(points[..., :2]), np.nan, ends[..., :2])
         return points
 
-    def _at_depth_one(self, pixels: NDArray[np.float64]) -> NDArray[np.float64]:
-        rays = self.unit_rays_through(pixels)
+    @cached_property
+    def _pixel_rays(self) -> NDArray[np.float64]:
+        """(H, W, 3) float64 read-only: see `unit_rays`."""
+        u, v = np.arange(self.width), np.arange(self.height)
+        rays = self.unit_rays_through(np.stack(np.meshgrid(u, v), axis=-1))
+        rays.flags.writeable = False
+        return rays
+
+    def _at_depth_one(
+        self, rays: NDArray[np.float64], pixels: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
         if self.law.model.parallel:
             rays[..., :2] = self.in_plane(pixels)
             return rays

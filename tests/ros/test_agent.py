@@ -352,11 +352,12 @@ def test_an_agent_lives_beside_the_users_own_node(keeper: Agent) -> None:
     code = """
 import rclpy, sys
 from sensor_msgs.msg import CameraInfo
-from sailenv_ros import Agent
+from sailenv_ros import Agent, CameraIntrinsics
 rclpy.init()
 node = rclpy.create_node("mine")
-lens = dict(width=64, height=48, cx_offset_px=8.0, cy_offset_px=-5.0)
-with Agent(**lens, namespace="/tested", name="beside") as agent:
+offset = dict(cx_offset_px=8.0, cy_offset_px=-5.0)
+lens = CameraIntrinsics(width=64, height=48, fx_px=50.0, fy_px=40.0, **offset)
+with Agent(intrinsics=lens, namespace="/tested", name="beside") as agent:
     got = []
     node.create_subscription(CameraInfo, "/tested/beside/camera_info", got.append, 3)
     for _ in range(100):
@@ -366,6 +367,7 @@ with Agent(**lens, namespace="/tested", name="beside") as agent:
             break
     assert got and got[0].width == 64
     assert (got[0].k[2], got[0].k[5]) == (got[0].p[2], got[0].p[6]) == (31.5 + 8.0, 23.5 - 5.0)
+    assert (got[0].k[0], got[0].k[4]) == (50.0, 40.0)
     assert tuple(frame["K"].ravel()) == tuple(got[0].k)
 assert rclpy.ok()
 node.create_publisher(CameraInfo, "still_works", 1).publish(CameraInfo())

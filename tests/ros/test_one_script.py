@@ -46,7 +46,7 @@ def program(env: Operations) -> Iterator[Any]:
     yield env.get_gravity()
     env.set_picture(bloom=0.125)
     off_centre = {"cx_offset_px": 6.0, "cy_offset_px": -3.5}
-    lens = CameraIntrinsics(width=48, height=40, vertical_fov_deg=75.0, **off_centre)
+    lens = CameraIntrinsics(width=48, height=40, fx_px=30.5, fy_px=26.25, **off_centre)
     env.set_intrinsics(lens)
     np.testing.assert_array_equal(env.get_frame()["K"], lens.K)
     yield env.get_object("block").pose, env.lights_names, env.get_light_color("lamp")

@@ -29,6 +29,7 @@ def test_the_public_names_are_these() -> None:
         "Pose",
         "Simulation",
         "__version__",
+        "load_calibration",
         "load_scene",
         "look_at",
         "show",

@@ -23,6 +23,7 @@ from sailenv_ros.native.lens_tables import (
     CUBE_FACES,
     FACE_CELLS,
     FACE_NODE,
+    LENS_RUN_TILES,
     LENS_TABLE,
     LENS_TILE,
     LENS_TILE_SHAPE,
@@ -135,9 +136,12 @@ def lens_samples(lens: CameraIntrinsics, fine: bool = False) -> LensSamples:
         for of_samples, of_pixels in ((x, pixels.x), (y, pixels.y), (face, pixels.face)):
             of_samples[1:rows:2, 1:columns:2] = of_pixels[:, : lens.width]
         steps = pixels._kept[0]
-    tiles = _tiles(x[:, :columns], y[:, :columns], face[:, :columns])
+    tiles, runs = (
+        _tiles(x[:, :columns], y[:, :columns], face[:, :columns], tile)
+        for tile in (LENS_TILE_SHAPE, (LENS_TILE_SHAPE[0], LENS_TILE_SHAPE[1] * LENS_RUN_TILES))
+    )
     cube = np.zeros(CUBE_FACES, CUBE_FACE)
-    kept: list[NDArray[Any]] = [steps, tiles, cube]
+    kept: list[NDArray[Any]] = [steps, tiles, runs, cube]
     for number in range(CUBE_FACES):
         cube["turn"][number] = FACE_TURNS[number].reshape(-1)
         here = (face == number) & np.isfinite(x)
@@ -152,9 +156,11 @@ def lens_samples(lens: CameraIntrinsics, fine: bool = False) -> LensSamples:
         face_at=address(face),
         steps_at=address(steps),
         tiles_at=address(tiles),
+        tile_runs_at=address(runs),
         faces_at=address(cube),
         stride=stride,
         tile_columns=tiles.shape[1],
+        run_columns=runs.shape[1],
         rows=rows,
         columns=columns,
         step_stride=steps.shape[2],
@@ -183,7 +189,10 @@ def _sees_ahead_alone(rays: Doubles) -> bool:
 def _faces_of(rays: Doubles) -> NDArray[np.uint8]:
     x, y, z = np.moveaxis(rays, -1, 0)
     along = np.stack([z, x, -x, y, -y, -z])
-    return np.argmax(np.where(np.isnan(along), -np.inf, along), axis=0).astype(np.uint8)
+    faces: NDArray[np.uint8] = np.argmax(np.where(np.isnan(along), -np.inf, along), axis=0).astype(
+        np.uint8
+    )
+    return faces
 
 
 def _places(rays: Doubles, face: int) -> tuple[Doubles, Doubles]:
@@ -222,10 +231,10 @@ def _mean_steps(places: Doubles, axis: int) -> Doubles:
 
 
 def _tiles(
-    x: NDArray[np.float32], y: NDArray[np.float32], face: NDArray[np.uint8]
+    x: NDArray[np.float32], y: NDArray[np.float32], face: NDArray[np.uint8], shape: tuple[int, int]
 ) -> NDArray[np.void]:
-    """Return (tile rows, tile columns) LENS_TILE."""
-    high, wide = LENS_TILE_SHAPE
+    """Return (tile rows, tile columns) LENS_TILE of tiles of a shape."""
+    high, wide = shape
     rows, columns = -(-x.shape[0] // high), -(-x.shape[1] // wide)
     widths = (0, rows * high - x.shape[0]), (0, columns * wide - x.shape[1])
 

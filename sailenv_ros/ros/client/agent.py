@@ -42,6 +42,8 @@ depth_frame_active : bool
         Nearest and farthest depth that is seen [m].
     cx_offset_px, cy_offset_px : float
         From the picture's centre to the optical axis, to the right and down [px].
+    intrinsics : CameraIntrinsics or None
+        Size and lens instead of the numbers above, such as `load_calibration` reads.
     depth_range_m : float
         Depth that the 8-bit depth picture shows as black [m].
     following : bool
@@ -84,6 +86,7 @@ depth_frame_active : bool
         far_m: float = 100.0,
         cx_offset_px: float = 0.0,
         cy_offset_px: float = 0.0,
+        intrinsics: CameraIntrinsics | None = None,
         depth_range_m: float = 10.0,
         following: bool = True,
         picture: PictureSettings | None = None,
@@ -102,17 +105,21 @@ depth_frame_active : bool
             "flow": flow_frame_active,
         }
         wanted = [view for view, is_active in active.items() if is_active]
+        lens = CameraIntrinsics(
+            width=width,
+            height=height,
+            vertical_fov_deg=vertical_fov_deg,
+            near_m=near_m,
+            far_m=far_m,
+            cx_offset_px=cx_offset_px,
+            cy_offset_px=cy_offset_px,
+        )
+        if intrinsics is not None and lens != CameraIntrinsics():
+            accepted = "left out where sizes, angles and distances of the camera are given"
+            raise InvalidRequest("intrinsics", intrinsics.distortion_model, accepted)
         spec = AgentSpec(
             name=name or f"agent_{uuid.uuid4().hex[:10]}",
-            intrinsics=CameraIntrinsics(
-                width=width,
-                height=height,
-                vertical_fov_deg=vertical_fov_deg,
-                near_m=near_m,
-                far_m=far_m,
-                cx_offset_px=cx_offset_px,
-                cy_offset_px=cy_offset_px,
-            ),
+            intrinsics=lens if intrinsics is None else intrinsics,
             depth_range_m=depth_range_m,
             rate_hz=0.0,
             views=checked_views([*wanted, *listed_views(views)]),

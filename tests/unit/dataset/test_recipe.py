@@ -59,6 +59,38 @@ def test_all_errors_are_told_with_their_places(tmp_path: Path) -> None:
     assert "did you mean 'coco'?" in text
 
 
+LENSES = """\
+version: 1
+scenes: [{scene: optical}]
+clips: {train: 1, val: 0}
+cameras:
+  - {type: agent, name: a, distortion_model: plumb_bob, distortion: [0.1]}
+  - {type: agent, name: b, distortion_model: fisheye}
+  - {type: agent, name: c, fx: 300}
+  - type: agent
+    name: d
+    distortion_model: equidistant
+    distortion: [-0.1, 0, 0, 0]
+    vertical_fov: 210
+"""
+
+
+def test_a_lens_that_is_none_is_told(tmp_path: Path) -> None:
+    """Too few coefficients, no such model, half a focal length, an angle beyond the model's."""
+    path = tmp_path / "bad.yaml"
+    path.write_text(LENSES)
+    with pytest.raises(RecipeError) as caught:
+        load_recipe(path)
+    told = {(one.line, one.field): one.message for one in caught.value.diagnostics}
+    assert told[5, "cameras[0].distortion"].startswith("must be 4 or 5 finite numbers, the coeff")
+    assert "did you mean" not in told[6, "cameras[1].distortion_model"]
+    assert "equidistant" in told[6, "cameras[1].distortion_model"]
+    assert told[7, "cameras[2].fx"].startswith("does not fit: fy must be above 0 [px]")
+    assert (
+        told[12, "cameras[3].vertical_fov"] == "must be a number from 1 to 209.2146 [deg], got 210"
+    )
+
+
 def test_a_scene_that_is_not_there_is_told(tmp_path: Path) -> None:
     """By the entry that names it."""
     path = written_recipe(tmp_path, scenes=[{"scene": "optikal"}, {"scene": "mine.yaml"}])

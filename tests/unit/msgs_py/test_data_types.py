@@ -15,9 +15,15 @@ from std_msgs.msg import Header
 
 import sailenv_msgs.msg as msgs
 from sailenv_msgs.msg import AgentInfo
+from sailenv_msgs.srv import SetIntrinsics
 from sailenv_msgs_py.agent_msgs import agent_spec_from_msg
 from sailenv_msgs_py.camera_info import camera_info_from_intrinsics, intrinsics_from_camera_info
 from sailenv_msgs_py.frame_info import frame_info_to_msg, header_of_frame
+from sailenv_msgs_py.intrinsics_fields import (
+    INTRINSICS_FIELDS,
+    intrinsics_fields,
+    intrinsics_from_fields,
+)
 from sailenv_msgs_py.picture_msgs import (
     picture_from_msg,
     picture_to_msg,
@@ -157,6 +163,25 @@ def test_a_camera_info_of_others_is_read_or_refused() -> None:
     shifted.k[2] += 320.5
     with pytest.raises(InvalidRequest, match="cx_offset_px"):
         intrinsics_from_camera_info(shifted)
+
+
+def test_a_request_for_a_lens_arrives_as_it_was_sent() -> None:
+    """Of any model; without its fields it is the usual one."""
+    lens = CameraIntrinsics(
+        vertical_fov_deg=190.0,
+        cx_offset_px=-3.5,
+        max_angle_deg=110.0,
+        distortion_model="equidistant",
+        distortion=(0.01, 0.0, -0.001, 0.0),
+    )
+    parallel = CameraIntrinsics(fx_px=90.0, fy_px=80.0, distortion_model="orthographic")
+    for sent in (lens, parallel, CameraIntrinsics(fx_px=400.0, fy_px=300.0)):
+        request = SetIntrinsics.Request(**intrinsics_fields(sent))
+        received = {name: getattr(request, name) for name in INTRINSICS_FIELDS}
+        assert intrinsics_from_fields(received) == sent
+    plain = SetIntrinsics.Request()
+    received = {name: getattr(plain, name) for name in INTRINSICS_FIELDS}
+    assert intrinsics_from_fields(received) == CameraIntrinsics()
 
 
 def test_a_message_with_a_name_alone_is_an_agent() -> None:

@@ -291,12 +291,12 @@ ENTRIES = {
         "version: 1\nagents:\n- {name: a, distortion_model: plumb_bob, fx: 200, fy: 200,\n"
         "   distortion: [-0.5, 0, 0, 0]}\n",
         "4:16: agents[0].distortion: must be coefficients that do not fold within the picture, or "
-        "max_angle must be less than 39.2315 [deg], where these fold, got [-0.5, 0.0, 0.0, 0.0]",
+        "max_angle must be less than 39.2315 [deg], where these fold, got [-0.5, 0, 0, 0]",
     ),
     "an image circle beyond the model's": (
         "version: 1\nagents: [{name: a, max_angle: 95}]\n",
         "2:31: agents[0].max_angle: must be at most 89.5 [deg], where the law of pinhole ends, got "
-        "95.0",
+        "95",
     ),
     "an agent turned nowhere": (
         "version: 1\nagents: [{name: a, rotation: [0, 0, 9]}]\n",

@@ -10,6 +10,7 @@ from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.frame.motion.forward import forward_views
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.views import FIVE_VIEWS, checked_views
 
@@ -88,6 +89,15 @@ def test_an_unknown_scene_is_told_with_the_form_of_generated_ones(simulation: Si
 def test_what_is_left_out_has_its_usual_value() -> None:
     with Simulation("optical", mode="lockstep", backend="native", height=30) as simulation:
         assert simulation.capture("depth")["depth"].shape == (30, 640)
+
+
+def test_a_simulation_has_an_agent_of_a_lens() -> None:
+    """As it is given; a size beside it is refused before anything is started."""
+    lens = CameraIntrinsics(width=48, height=32, fx_px=40.0, fy_px=30.0, cx_offset_px=2.0)
+    with Simulation("optical", mode="lockstep", backend="native", intrinsics=lens) as simulation:
+        assert simulation.capture("depth").camera.intrinsics == lens
+    with pytest.raises(InvalidRequest, match="width and height must be left out where intrinsics"):
+        Simulation("optical", intrinsics=lens, width=48)
 
 
 def test_a_size_and_an_agent_are_refused_together() -> None:

@@ -84,6 +84,25 @@ def test_a_ray_comes_back_from_its_place(
     np.testing.assert_allclose(law.unproject(places), rays, atol=1e-9)
 
 
+PLACES = st.lists(st.tuples(st.floats(-4.0, 4.0), st.floats(-4.0, 4.0)), min_size=1, max_size=20)
+
+
+@given(LAWS, PLACES, st.floats(0.05, 1.0))
+def test_what_a_place_sees_is_seen_there(
+    law: LensLaw, places: list[tuple[float, float]], share: float
+) -> None:
+    """Anywhere in the plane: a ray that is found is within the limit and leads to the place."""
+    narrow = replace(law, limit_rad=share * law.limit_rad)
+    rays = narrow.unproject(places)
+    found = np.isfinite(rays).all(axis=1)
+    assert np.isnan(rays[~found]).all()
+    np.testing.assert_allclose(np.linalg.norm(rays[found], axis=1), 1.0, atol=1e-12)
+    angles = np.arctan2(np.hypot(rays[found, 0], rays[found, 1]), rays[found, 2])
+    assert (angles <= narrow.limit_rad * (1.0 + 1e-9)).all()
+    back = law.project(rays[found])
+    np.testing.assert_allclose(back, np.array(places)[found], rtol=1e-9, atol=1e-9)
+
+
 @given(LAWS, SHARES)
 def test_neighbours_stay_apart(law: LensLaw, shares: list[tuple[float, float]]) -> None:
     """The law turns nothing round within its limit: the derivative has a positive determinant."""
@@ -323,6 +342,9 @@ def test_wide_lenses_see_behind_themselves() -> None:
         # With alpha of 0.5 and xi of 0: half of what the unified model sees.
         ("double_sphere", (0.0, 0.5), 180.0),
         ("double_sphere", (0.0, 0.0), 90.0),
+        # Of one sphere alone the second centre sees half of it.
+        ("double_sphere", (-0.5, 0.0), 60.0),
+        ("double_sphere", (0.5, 1.0), 120.0),
     ],
 )
 def test_a_law_ends_where_arithmetic_says(

@@ -138,14 +138,16 @@ struct LensDrawing {
         }
     }
 
+    // False where none of a tile's samples can be seen to lie in the triangle.
+    LANES_METHOD bool may_reach(const LensTile& tile) const {
+        return (tile.faces >> face & 1) && !(edge0.most_within(tile) < least0) &&
+               !(edge1.most_within(tile) < least1) && !(edge2.most_within(tile) < least2);
+    }
+
     // Draws some rows of a tile, whose columns are drawn at once.
     LANES_METHOD void draw_tile(const LensTile& tile, int32_t top, int32_t bottom,
                                 int32_t left) const {
-        if (!(tile.faces >> face & 1)) return;
-        if (edge0.most_within(tile) < least0 || edge1.most_within(tile) < least1 ||
-            edge2.most_within(tile) < least2) {
-            return;
-        }
+        if (!may_reach(tile)) return;
         const bool within = edge0.least_within(tile) >= least0 &&
                             edge1.least_within(tile) >= least1 &&
                             edge2.least_within(tile) >= least2;
@@ -166,12 +168,20 @@ void draw_tiles(const Triangle& t, uint32_t number, const Part& part, const Proj
         return;
     }
     const LensTable& lens = *p.table;
+    const int32_t first = t.x0 / LENS_TILE_COLUMNS, last = t.x1 / LENS_TILE_COLUMNS;
     for (int32_t row = y0 / LENS_TILE_ROWS; row <= y1 / LENS_TILE_ROWS; row++) {
         const LensTile* tiles = lens.tiles + row * lens.tile_columns;
+        const LensTile* runs = lens.tile_runs + row * lens.run_columns;
         const int32_t top = std::max(y0, row * LENS_TILE_ROWS),
                       bottom = std::min(y1, (row + 1) * LENS_TILE_ROWS - 1);
-        for (int32_t k = t.x0 / LENS_TILE_COLUMNS; k <= t.x1 / LENS_TILE_COLUMNS; k++) {
-            drawing.draw_tile(tiles[k], top, bottom, k * LENS_TILE_COLUMNS);
+        for (int32_t k = first; k <= last;) {
+            const int32_t run = k / LENS_RUN_TILES;
+            const int32_t end = std::min(last, (run + 1) * LENS_RUN_TILES - 1);
+            if (end > k + 1 && !drawing.may_reach(runs[run])) {
+                k = end + 1;
+                continue;
+            }
+            for (; k <= end; k++) drawing.draw_tile(tiles[k], top, bottom, k * LENS_TILE_COLUMNS);
         }
     }
 }

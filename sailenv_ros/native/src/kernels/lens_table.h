@@ -18,6 +18,7 @@ constexpr int32_t CUBE_FACES = 6;
 constexpr int32_t FACE_CELLS = 128;                           // of a face, along each side
 constexpr int32_t BLOCK_CELLS = 8;                            // of a block of them, along each side
 constexpr int32_t LENS_TILE_COLUMNS = 8, LENS_TILE_ROWS = 8;  // of samples
+constexpr int32_t LENS_RUN_TILES = 16;                        // side by side
 constexpr int32_t NO_FACE = -1;                               // where the lens sees nothing
 constexpr float UNKNOWN_BEND = 1e30f;
 
@@ -54,8 +55,9 @@ struct LensTable {
     const uint8_t* face;    // (rows, stride)
     const float* steps;     // (4, H, step_stride), from pixel to pixel; see LensSteps
     const LensTile* tiles;  // (tile rows, tile_columns)
-    const CubeFace* faces;  // (CUBE_FACES,)
-    int64_t stride, tile_columns;
+    const LensTile* tile_runs;  // (tile rows, run_columns): of LENS_RUN_TILES tiles
+    const CubeFace* faces;      // (CUBE_FACES,)
+    int64_t stride, tile_columns, run_columns;
     int64_t rows, columns;  // samples
     int64_t step_stride, step_rows;
     int64_t several;  // 1: samples lie on several faces

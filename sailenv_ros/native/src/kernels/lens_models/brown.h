@@ -92,7 +92,7 @@ inline bool undistort(const double* k, double most, const double* place, double*
             const double dy = (at.xx * down - at.yx * right) / d;
             x += dx;
             y += dy;
-            solved = length2(dx, dy) <= 2e-15 * (1.0 + length2(x, y));
+            solved = length2(dx, dy) <= LAST_STEP * (1.0 + length2(x, y));
             const double length = length2(x, y);
             if (length > most && !solved) {
                 x *= most / length;

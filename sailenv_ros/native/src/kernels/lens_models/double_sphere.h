@@ -18,9 +18,10 @@ struct DoubleSphere {
         const double xi = k[0], alpha = k[1];
         if (!(xi > -1.0 && xi <= 1.0 && alpha >= 0.0 && alpha <= 1.0)) return {0.0, 0.0, false};
         const double w1 = alpha > 0.5 ? (1.0 - alpha) / alpha : alpha / (1.0 - alpha);
-        const double w2 = (w1 + xi) / std::sqrt(2.0 * w1 * xi + xi * xi + 1.0);
-        // At the limit itself the place is infinite, or two rays meet.
-        const double angle = (1.0 - 1e-6) * std::acos(-std::fmin(w2, 1.0));
+        // The angle from the second centre at which the place is infinite, or two rays meet; then
+        // that from the first one. The paper's w2 is only near it where xi is not 0.
+        const double second = std::acos(-std::fmin(w1, 1.0));
+        const double angle = (1.0 - 1e-6) * (second + std::asin(xi * std::sin(second)));
         return {angle, angle, false};
     }
 

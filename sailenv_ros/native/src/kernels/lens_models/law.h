@@ -34,6 +34,10 @@ struct Reach {
     bool folds;
 };
 
+// A step of Newton's after which the next one would be below the rounding: its error is about the
+// square of the step.
+constexpr double LAST_STEP = 1e-10;
+
 struct LensLaw {
     int64_t model;
     double limit;   // largest angle from the axis [rad], at most Reach::angle
@@ -48,24 +52,31 @@ inline bool within_limit(const LensLaw& law, double r, double z) {
     return (r > 0.0 || z > 0.0) && std::atan2(r, z) <= law.limit;
 }
 
-// The argument from 0 to `most` where an increasing function reaches `goal`: Newton's steps,
-// halved where they leave the interval. `function(t, value, slope)`; false beyond `most`.
+// The argument from 0 to `most` where an increasing function reaches `goal`: Newton's steps, and
+// halves where they leave the interval or, beside a pole, go nowhere. `function(t, value, slope)`;
+// false beyond `most`.
 template <class Function>
 inline bool increasing_root(double goal, double most, const Function& function, double& t) {
     double low = 0.0, high = most, value, slope;
     function(most, value, slope);
     if (!(goal <= value)) return false;
-    t = goal < most ? goal : most;
-    for (int step = 0; step < 100; step++) {
+    t = goal < most ? goal : 0.5 * most;
+    for (int step = 0; step < 200; step++) {
         function(t, value, slope);
-        (value > goal ? high : low) = t;
-        double next = t - (value - goal) / slope;
-        if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+        const double error = value - goal;
+        (error > 0.0 ? high : low) = t;
+        double next = t - error / slope;
+        const bool is_near = std::fabs(error) <= 1e-6 * (1.0 + goal);
+        const bool is_newton =
+            next >= low && next <= high && (is_near || std::fabs(next - t) > 1e-3 * (high - low));
+        if (!is_newton) next = 0.5 * (low + high);
         const double moved = std::fabs(next - t);
         t = next;
-        if (moved <= 1e-16 * (1.0 + t)) break;
+        if (is_near && moved <= (is_newton ? LAST_STEP : 1e-16) * (1.0 + t)) return true;
+        if (!(high > low)) break;
     }
-    return true;
+    function(t, value, slope);
+    return std::fabs(value - goal) <= 1e-6 * (1.0 + goal);
 }
 
 // The first argument of (0, most] for which a condition does not hold; `most` where there is none.
