@@ -1,4 +1,4 @@
-"""Baked light on the GPU: textures of what `baked_state` works out."""
+"""Baked light on the GPU: textures of what `baked_state` computes."""
 
 from __future__ import annotations
 

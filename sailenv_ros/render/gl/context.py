@@ -101,7 +101,7 @@ def create_context(device: int | None = None) -> tuple[moderngl.Context, DeviceR
     Raises
     ------
     ContextError
-        If there is none to be had; names every device tried and why it was refused.
+        If there is none; names every device tried and why it was refused.
     """
     if device is not None:
         if isinstance(device, bool) or not isinstance(device, int) or not 0 <= device < MAX_DEVICES:

@@ -1,6 +1,6 @@
 """Meshes on the GPU: one vertex buffer and one index buffer for everything that is drawn.
 
-The parts of a scene come in, slices of the two buffers go out. The buffers are made anew when a
+The parts of a scene come in, slices of the two buffers go out. The buffers are made again when a
 mesh appears that is not there, and then hold what the present scene shows and nothing else.
 """
 

@@ -54,7 +54,7 @@ class Renderer(DrawingRenderer):
     Raises
     ------
     ContextError
-        If no OpenGL context is to be had.
+        If no OpenGL context is available.
     """
 
     def __init__(self, *, device: int | None = None) -> None:

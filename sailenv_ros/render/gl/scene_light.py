@@ -63,7 +63,7 @@ class SceneLight:
         geometry: GeometryBuffers,
         radiance: Radiance,
     ) -> Illumination:
-        """Bring everything up to date for a snapshot; `draws` must be placed anew afterwards."""
+        """Bring everything up to date for a snapshot; `draws` must be placed again afterwards."""
         contents = snapshot.contents
         main = main_light(contents.lights)
         composited = self._baked.show(snapshot)

@@ -125,7 +125,7 @@ class _Layers:
             self._array.build_mipmaps()
 
     def _make(self, count: int) -> None:
-        """Begin anew with room for so many textures, and some."""
+        """Begin again with room for so many textures, and some."""
         self._array.release()
         layers = count + int(SPARE * count) if count else 0
         edge = self._edge if layers else 1

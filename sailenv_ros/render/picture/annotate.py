@@ -111,7 +111,7 @@ def with_depth(previous: Observation, surface: NDArray[np.float32]) -> Observati
     ----------
     previous : Observation
     surface : (H, W, 2) float32
-        As `annotate` takes it, drawn anew from the poses of then.
+        As `annotate` takes it, drawn again from the poses of then.
     """
     reach = reach_view(previous.camera.intrinsics)
     truth = annotate(surface, previous.snapshot, None, previous.camera, frozenset({reach}))

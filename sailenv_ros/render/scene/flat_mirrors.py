@@ -28,7 +28,7 @@ MOST = 2
 """Mirrors in one picture: the largest; others mirror the room as other surfaces do."""
 
 LEAST_PX = 64
-"""A mirror whose rectangle covers less of the picture is passed over."""
+"""A mirror whose rectangle covers less of the picture is skipped."""
 
 FLAT = 0.05
 """A mirror is thinner than this share of its shorter side."""

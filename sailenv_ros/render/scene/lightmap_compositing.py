@@ -71,7 +71,7 @@ class CompositedLight:
     main_edges: SunEdges | None = None
 
     def texels(self) -> NDArray[np.float16]:
-        """Return (H, W, 4) float16: the light map, added up anew at each call."""
+        """Return (H, W, 4) float16: the light map, added up at each call."""
         return sum_texels(self.layers.terms, self.layers.more, self.layers.shown)
 
 
@@ -195,7 +195,7 @@ def light_alone(baked: BakedLight, light: Light, *, is_main: bool) -> Composited
 def instance_light(
     probes: NDArray[np.float32], grid: ProbeGrid, points: NDArray[np.float64]
 ) -> NDArray[np.float32]:
-    """Interpolate probes at points; beyond the grid its border goes on.
+    """Interpolate probes at points; beyond the grid its border continues.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from sailenv_ros.types.snapshot import DrawnInstance, SceneContents
 __all__ = ["NOTHING_OUTSIDE", "shown_outside"]
 
 MEAN_SHARE = 1.0 / 3.0
-"""Share of its greatest radiance that what lies outside has on the mean."""
+"""Share of its greatest radiance that what lies outside has on average."""
 
 NOTHING_OUTSIDE = 0, 0.0
 

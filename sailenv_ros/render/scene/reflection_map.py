@@ -1,7 +1,7 @@
 """Reflection map: a room seen from its middle, blurred for several roughnesses.
 
 Pictures of linear radiance in six directions come in, a texture goes out: the directions of the
-world laid flat on an octahedron, for several roughnesses one behind the other.
+world unwrapped to an octahedron, for several roughnesses one behind the other.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ class RoomReflections:
         Serves several rooms, one after another, some of which are shown again; None keeps nothing
         but the room that is shown.
     drawn_by : str
-        Tells apart what draws: shares of rooms in light as it was baked are kept on disk for it.
+        Distinguishes what draws: shares of rooms in light as it was baked are kept on disk for it.
         Empty keeps none.
 
     Attributes
