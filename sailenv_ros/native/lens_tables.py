@@ -1,6 +1,6 @@
 """The structures of src/kernels/lens_table.h as NumPy types: lenses that bend straight lines.
 
-Fields that end in `_at` hold addresses of arrays. The process that fills them keeps the arrays alive.
+Fields that end in `_at` hold addresses of arrays. The process that fills them in keeps these alive.
 """
 
 from __future__ import annotations
