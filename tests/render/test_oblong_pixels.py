@@ -5,6 +5,8 @@ Corners and focal lengths are sums of few powers of 2, as in `test_off_centre`.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -54,10 +56,8 @@ def test_objects_alone_have_every_second_row_too() -> None:
 
 def test_what_cannot_be_drawn_through_is_refused(render: Render) -> None:
     """A lens of parallel rays: in one sentence."""
-    now, lens = (
-        snapshot_of(crowd()),
-        {"distortion_model": "orthographic", "fx_px": 9.0, "fy_px": 9.0},
-    )
+    now = snapshot_of(crowd())
+    lens: dict[str, Any] = {"distortion_model": "orthographic", "fx_px": 9.0, "fy_px": 9.0}
     accepted = "distortion_model must be a model whose rays meet in one point"
     with pytest.raises(InvalidRequest, match=accepted):
         render(now, camera_at(**lens), "depth")
