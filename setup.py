@@ -129,6 +129,7 @@ def data_files() -> list[tuple[str, list[str]]]:
         (f"{share}/config/recipes", sorted(glob("config/recipes/*.yaml"))),
         (f"{share}/config/rooms", sorted(glob("config/rooms/*.yaml"))),
         (f"{share}/config/rooms/library", sorted(glob("config/rooms/library/*.yaml"))),
+        (f"{share}/config/sensors", sorted(glob("config/sensors/*.yaml"))),
         (f"{share}/config/streams", sorted(glob("config/streams/*.yaml"))),
         (f"{share}/config/streams/pictures", sorted(glob("config/streams/pictures/*.png"))),
         (f"{share}/launch", sorted(glob("launch/*.launch.py"))),

@@ -75,7 +75,7 @@ def test_the_wheel_holds_all_that_is_needed(tmp_path: Path) -> None:
     for pattern in (
         "scenes/*.yaml",
         "scenes/*.json",
-        "config/*.yaml",
+        "config/**/*.yaml",
         "config/*.xml",
         "config/*.json",
         "config/*.rviz",

@@ -51,7 +51,7 @@ struct Chunk {
 };
 
 constexpr float LEAST_ROUGHNESS = 0.045f;  // smoother ones have no highlights; see textures.glsl
-constexpr float NO_MAP = -1.0f;  // in place of the logarithm of a texture's size
+constexpr float NO_MAP = -1.0f;            // in place of the logarithm of a texture's size
 
 // Interpolates what the triangles' corners know, and notes the materials: of a row's pixels, and of
 // points anywhere in the picture.
