@@ -2,7 +2,7 @@
 
     python lens_judges.py FOLDER      needs opencv-contrib-python 4.x, nothing of this project
 
-A row for each model: views, corners, the calibrator's own residual [px], the errors of focal lengths
+A row for each model: views, corners, the calibrator's residual [px], the errors of focal lengths
 and axis, and how far the two laws are apart over all pixels: median, 95 %, greatest [px].
 """
 
