@@ -149,7 +149,7 @@ def _in_turn(lines: Sequence[Connection]) -> Iterator[DatasetFrame]:
         for line in list(open_lines):
             try:
                 entry = line.recv()
-            except EOFError:
+            except (EOFError, OSError):  # it ended before an entry, or within one
                 raise RecordingError(
                     "a worker of the stream was killed; it may need more memory than there is: "
                     "use fewer workers"

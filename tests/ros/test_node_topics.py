@@ -67,7 +67,7 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
         **{f"{NAMESPACE}/agent/{view}": "sensor_msgs/msg/Image" for view in VIEWS},
         **{
             f"{NAMESPACE}/agent/{view}/color": "sensor_msgs/msg/Image"
-            for view in ("depth", "category", "instance", "flow")
+            for view in ("depth", "category", "instance", "flow", "measured_depth")
         },
         **{
             f"{NAMESPACE}/agent/{view}/compressed": "sensor_msgs/msg/CompressedImage"

@@ -39,6 +39,7 @@ OTHERS: dict[str, Any] = {
     "bloom": 0.5,
     "full_well": 300.0,
     "read_noise": 40.0,
+    "depth_sensor": "kinect_v1",
 }
 """Of each setting another value than the usual one."""
 
@@ -83,7 +84,7 @@ def test_the_next_frame_is_brighter_and_its_truth_the_same(agent: Agent) -> None
 
 
 def test_every_setting_is_seen(agent: Agent) -> None:
-    """Each by itself changes the picture of one instant, and of its truth not a byte."""
+    """Each by itself changes what is measured at one instant, and of its truth not a byte."""
     needs = {"read_noise": {"full_well": 300.0}}
     assert tuple(OTHERS) == NAMES
     for name, value in OTHERS.items():
@@ -91,7 +92,8 @@ def test_every_setting_is_seen(agent: Agent) -> None:
         before = agent.get_frame(VIEWS)
         assert agent.set_picture(**{name: value}) == replace(usual, **{name: value})
         after = agent.get_frame(VIEWS)
-        assert after["main"].tobytes() != before["main"].tobytes(), name
+        seen = "measured_depth" if name == "depth_sensor" else "main"
+        assert after[seen].tobytes() != before[seen].tobytes(), name
         assert truth(after) == truth(before), name
 
 

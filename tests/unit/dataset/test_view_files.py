@@ -125,7 +125,12 @@ def test_what_cannot_be_compressed_so_is_told(tmp_path: Path) -> None:
         "compression[0].views[1]", "compression[1].views[0]", "compression[2].views[0]",
         "compression[3].views[0]",
     ]  # fmt: skip
-    for text in ("is not among", "named twice", "real numbers alone", "takes depth, range alone"):
+    for text in (
+        "is not among",
+        "named twice",
+        "real numbers alone",
+        "takes depth, range, measured_depth alone",
+    ):
         assert text in str(caught.value)
     path = written_recipe(tmp_path, formats=["coco"], compression=[wrong[1]])
     with pytest.raises(RecipeError, match="is known to the format webdataset alone"):

@@ -51,6 +51,7 @@ from sailenv_ros.frame.truth import AmodalMasks
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.contacts import Contact
+from sailenv_ros.types.depth_sensor_names import depth_sensor_names
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.labels import Category, CategoryTable, Instance, Keypoint
@@ -160,6 +161,7 @@ PICTURES = st.builds(
     PictureSettings,
     tone_curve=st.sampled_from(["filmic", "linear"]),
     smooth_edges=st.booleans(),
+    depth_sensor=st.sampled_from(depth_sensor_names()),
     supersampling=st.integers(1, 4),
     **{
         name: st.floats(at.least, at.most) for name, at in LIMITS.items() if name != "supersampling"

@@ -21,6 +21,7 @@ from sailenv_ros.simulation.core import SimulationCore
 from sailenv_ros.simulation.operations import Operation, Operations
 from sailenv_ros.types.agents import RATE, AgentSpec
 from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
+from sailenv_ros.types.lens_settings import PINHOLE_FOV
 from sailenv_ros.types.lights import ENVIRONMENT_LIMITS, LIGHT_LIMITS, Environment, Light
 from sailenv_ros.types.picture_settings import LIMITS, PictureSettings
 from sailenv_ros.types.rigid_body import RIGID_BODY_LIMITS, RigidBody
@@ -191,14 +192,19 @@ def test_a_number_of_a_rigid_body(tmp_path: Path, name: str) -> None:
 def test_a_number_of_a_lens(tmp_path: Path, name: str, parameter: str) -> None:
     """Parameters of the node are typed, so only numbers of their type come to the bounds."""
     bounds, key = INTRINSICS_LIMITS[name], name.removesuffix("_deg")
+    # The node's agent is a pin-hole; a fisheye may see more.
+    fisheye: dict[str, Any] = {"distortion_model": "equidistant", "distortion": [0, 0, 0, 0]}
     doors: dict[str, Door] = {
-        "class": lambda v: CameraIntrinsics(**{name: v}) and None,
+        "class": lambda v: CameraIntrinsics(**{name: v}, **fisheye) and None,
         "file": lambda v: "".join(
-            diagnostics(tmp_path, f"version: 1\nagents: {json.dumps([{'name': 'e', key: v}])}\n")
+            diagnostics(
+                tmp_path, f"version: 1\nagents: {json.dumps([{'name': 'e', key: v, **fisheye}])}\n"
+            )
         ),
     }
     for door, take in doors.items():
         assert verdicts(take, bounds) == expected(bounds), door
+    bounds = PINHOLE_FOV if name == "vertical_fov_deg" else bounds
     kind = int if bounds.whole else float
     for value in (bounds.least, cast(float, bounds.least) / 2, cast(float, bounds.most) * 2):
         given = kind(cast(float, value))
