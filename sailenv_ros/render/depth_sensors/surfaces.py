@@ -60,7 +60,7 @@ class Surfaces:
 
     @cached_property
     def heights(self) -> Numbers:
-        """(H, W): normal · ray, negative for what faces the sensor; also by places of others."""
+        """(H, W): normal · ray, negative for surfaces that face the sensor."""
         n, r = self.normals, self.rays
         heights: Numbers = n[..., 0] * r[..., 0] + n[..., 1] * r[..., 1] + n[..., 2]
         return heights

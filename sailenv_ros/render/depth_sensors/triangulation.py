@@ -80,8 +80,7 @@ class Triangulation(SceneModel):
         rest = np.sqrt(np.maximum(spread * spread - step * step * np.float32(1 / 12), 0))
         noisy = depth + rest * noise.correlated(height, width, self.correlation)
         steps = np.rint(np.float32(self._scale / self.disparity_step) / noisy)
-        with np.errstate(divide="ignore"):
-            measured: Numbers = np.divide(np.float32(self._scale / self.disparity_step), steps)
+        measured: Numbers = np.divide(np.float32(self._scale / self.disparity_step), steps)
         measured[~(steps > 0) | self._in_shadow(surfaces)] = np.nan
         return measured
 
@@ -117,9 +116,8 @@ class Triangulation(SceneModel):
         normals = surfaces.normals
         x, y = rays[..., 0].ravel()[place], rays[..., 1].ravel()[place]
         facing = normals[..., 0] * x + normals[..., 1] * y + normals[..., 2]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            on_plane = depth * surfaces.heights / facing
-            same = np.abs(other - on_plane) <= np.float32(_SAME_SURFACE) * depth
+        on_plane = depth * surfaces.heights / facing
+        same = np.abs(other - on_plane) <= np.float32(_SAME_SURFACE) * depth
         return np.where(same, depth, other)
 
     def _shift(self, surfaces: Surfaces) -> Numbers:
