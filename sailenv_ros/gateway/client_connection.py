@@ -91,14 +91,14 @@ class ClientConnection:
         try:
             await self._converse()
             in_order = True
-        except (OSError, asyncio.IncompleteReadError) as problem:
-            self._say_it_went(problem)
-        except SailenvError as error:
+        except SailenvError as error:  # first: a deadline is an OSError too
             told = f"{self.peer} is disconnected: {one_line(error)}"
             if self._greeted:
                 _log.warning("%s", told)
             else:
                 self._stranger_left(told)
+        except (OSError, asyncio.IncompleteReadError) as problem:
+            self._say_it_went(problem)
         except Exception:
             _log.exception("%s is disconnected because of an internal error", self.peer)
         finally:
