@@ -1,7 +1,7 @@
 """`AgentSpec` to and from `sailenv_msgs/AgentInfo`.
 
 The message has no pose: where an agent starts stands beside it in a request, and where it is
-stands on its pose topic.
+stands on its pose topic. The cameras of a rig have messages of their own.
 """
 
 from __future__ import annotations
@@ -14,8 +14,10 @@ from sailenv_msgs_py.intrinsics_fields import (
 )
 from sailenv_msgs_py.mover_msgs import look_at_from_msg, look_at_to_msg
 from sailenv_msgs_py.picture_msgs import picture_from_msg, picture_to_msg
+from sailenv_msgs_py.transforms import pose_from_msg, pose_to_msg
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.rigs import body_of
 from sailenv_ros.types.views import FIVE_VIEWS
 
 __all__ = ["agent_spec_from_msg", "agent_spec_to_msg"]
@@ -33,6 +35,7 @@ def agent_spec_to_msg(spec: AgentSpec) -> AgentInfo:
         mover=spec.mover,
         picture=picture_to_msg(spec.picture),
         look_at=look_at_to_msg(spec.look_at),
+        extrinsics=pose_to_msg(spec.extrinsics or Pose()),
     )
 
 
@@ -55,4 +58,5 @@ def agent_spec_from_msg(msg: AgentInfo, *, pose: Pose | None = None) -> AgentSpe
         picture=picture_from_msg(msg.picture),
         pose=pose,
         look_at=look_at_from_msg(msg.look_at),
+        extrinsics=pose_from_msg(msg.extrinsics) if body_of(msg.name) else None,
     )

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from sailenv_ros.types.agents import AgentSpec
     from sailenv_ros.types.camera import Camera, CameraIntrinsics
     from sailenv_ros.types.geometry import Pose, look_at
+    from sailenv_ros.types.rigs import RigCamera
 
 __all__ = [
     "Agent",
@@ -34,6 +35,7 @@ __all__ = [
     "CameraIntrinsics",
     "Frame",
     "Pose",
+    "RigCamera",
     "Simulation",
     "__version__",
     "load_calibration",
@@ -49,6 +51,7 @@ _HOMES = {
     "CameraIntrinsics": "sailenv_ros.types.camera",
     "Frame": "sailenv_ros.frame.frame",
     "Pose": "sailenv_ros.types.geometry",
+    "RigCamera": "sailenv_ros.types.rigs",
     "Simulation": "sailenv_ros.simulation",
     "load_calibration": "sailenv_ros.scene.calibration_files",
     "load_scene": "sailenv_ros.scene.loader",

@@ -38,6 +38,7 @@ from sailenv_ros.types.agents import AgentPose
 from sailenv_ros.types.contacts import Contact
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.picture_settings import NAMES
+from sailenv_ros.types.rigs import camera_of
 from sailenv_ros.types.scene_info import SceneInfo
 
 _NO_CHANGE, _CLOSED, _OPEN = (
@@ -52,12 +53,25 @@ _NO_CHANGE, _CLOSED, _OPEN = (
 
 def write_agent(given: Arguments) -> Arguments:
     spec = given["spec"]
-    return {"agent_info": spec, "has_pose": spec.pose is not None, "pose": spec.pose}
+    return {
+        "agent_info": spec,
+        "has_pose": spec.pose is not None,
+        "pose": spec.pose,
+        "cameras": spec.camera_specs,
+    }
 
 
 def read_agent(given: Arguments) -> Arguments:
-    pose = given["pose"] if given["has_pose"] else None
-    return {"spec": replace(given["agent_info"], pose=pose)}
+    pose, spec = given["pose"] if given["has_pose"] else None, given["agent_info"]
+    for camera in given["cameras"]:
+        if camera.body != spec.name:
+            accepted = f"{spec.name}/<camera>, a camera of this rig"
+            raise InvalidRequest("name of the camera", camera.name, accepted)
+    cameras = {camera_of(camera.name): camera.as_camera() for camera in given["cameras"]}
+    if len(cameras) < len(given["cameras"]):
+        names = [camera.name for camera in given["cameras"]]
+        raise InvalidRequest("names of the cameras", names, "different from each other")
+    return {"spec": replace(spec, pose=pose, cameras=cameras or None)}
 
 
 def write_seed(given: Arguments) -> Arguments:
@@ -287,6 +301,13 @@ def pose_of_response(response: Any) -> AgentPose:
 def fill_frame(response: Any, frame: Frame, info: SceneInfo) -> None:
     response.stamp = stamp_from_ns(frame.stamp_ns)
     response.sequence = frame.sequence
+
+
+def fill_rig(response: Any, frames: dict[str, Frame], info: SceneInfo) -> None:
+    for frame in frames.values():
+        response.stamp = stamp_from_ns(frame.stamp_ns)
+    response.cameras = [frame.agent for frame in frames.values()]
+    response.sequences = [frame.sequence for frame in frames.values()]
 
 
 def fill_contacts(response: Any, contacts: tuple[Contact, ...], info: SceneInfo) -> None:

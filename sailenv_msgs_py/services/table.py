@@ -272,6 +272,7 @@ AGENT_SERVICES: tuple[Service, ...] = (
         ),
     ),
     Service(Operations.capture, srv.Capture, none={"views": []}, fill=convert.fill_frame),
+    Service(Operations.capture_rig, srv.CaptureRig, none={"views": []}, fill=convert.fill_rig),
     Service(
         Operations.get_amodal_masks,
         srv.GetAmodalMasks,

@@ -74,7 +74,9 @@ PAGES: Mapping[str, Mapping[str, str]] = {
         "AreaLightSpec": "An area light",
     },
     "scene_cameras.md": {
+        "_camera": "Every camera",
         "AgentSpecModel": "An agent",
+        "RigCameraSpec": "A camera of a rig",
         "PictureSpec": "A picture",
         "MoverSpec": "A mover",
         "WaypointSpec": "A waypoint",
@@ -91,6 +93,7 @@ PAGES: Mapping[str, Mapping[str, str]] = {
 """Names of the pages, with the kinds of entries that each describes and their headings."""
 
 _SHARED = {
+    **dict.fromkeys(("AgentSpecModel", "RigCameraSpec"), "_camera"),
     **dict.fromkeys(_LIGHTS, "_light"),
     **dict.fromkeys(_RANDOM, "_random"),
     **dict.fromkeys(_BEHAVIOURS, "_behaviour"),
@@ -140,7 +143,7 @@ def is_stale(folder: Path, schema: Mapping[str, Any]) -> bool:
 def _with_shared(kinds: Mapping[str, Any]) -> dict[str, Any]:
     """Add the tables of shared keys; take these keys out of the kinds that share them."""
     found = dict(kinds)
-    for shared in ("_light", "_random", "_behaviour"):
+    for shared in ("_camera", "_light", "_random", "_behaviour"):
         members = [kinds[name] for name, family in _SHARED.items() if family == shared]
         first, *others = members
         same = {

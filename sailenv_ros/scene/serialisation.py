@@ -29,6 +29,7 @@ from sailenv_ros.types.lights import Light
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.rigid_body import RigidBody
+from sailenv_ros.types.rigs import RigCamera
 
 __all__ = [
     "MOTION_KEYS",
@@ -119,22 +120,30 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
     pose : Pose or None
         Where it stands; None for one that starts at its mover.
     """
-    values = {
-        "depth_range": spec.depth_range_m,
-        "rate": spec.rate_hz,
-        "views": spec.views,
-        "following": spec.following,
-    }
-    defaults = AgentSpecModel.model_fields
-    given = {key: value for key, value in values.items() if value != defaults[key].default}
-    entry: dict[str, Any] = {"name": spec.name, **lens_entry(spec.intrinsics), **_plain(given)}
-    if spec.picture != PictureSettings():
-        entry["picture"] = _picture(spec.picture)
+    entry = _camera_entry(spec.name, spec, {"rate": spec.rate_hz, "following": spec.following})
+    if spec.cameras is not None:
+        entry["cameras"] = [
+            {**_camera_entry(name, camera, {}), **pose_entry(camera.extrinsics)}
+            for name, camera in spec.cameras.items()
+        ]
     if spec.mover:
         entry["mover"] = spec.mover
     if spec.look_at is not None:
         entry["keep_looking_at"] = look_at_entry(spec.look_at)
     return entry if pose is None else {**entry, **pose_entry(pose)}
+
+
+def _camera_entry(
+    name: str, camera: AgentSpec | RigCamera, more: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the keys that an agent and a camera of a rig have in common, and `more`."""
+    values = {"depth_range": camera.depth_range_m, "views": camera.views, **more}
+    defaults = AgentSpecModel.model_fields
+    given = {key: value for key, value in values.items() if value != defaults[key].default}
+    entry: dict[str, Any] = {"name": name, **lens_entry(camera.intrinsics), **_plain(given)}
+    if camera.picture != PictureSettings():
+        entry["picture"] = _picture(camera.picture)
+    return entry
 
 
 def lens_entry(lens: CameraIntrinsics) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, optional
 from sailenv_ros.scene.fields import Name, Position, Rule
 from sailenv_ros.scene.placing import Aimed, Turned
-from sailenv_ros.scene.rules import below, distinct_values, turned_where_placed
+from sailenv_ros.scene.rules import below, distinct, distinct_values, turned_where_placed
 from sailenv_ros.scene.spec_body import BodySpec, forces_or_waypoints
 from sailenv_ros.scene.spec_lens import LensSpec
 from sailenv_ros.scene.spec_look_at import LookAtSpec
@@ -17,9 +17,10 @@ from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.types.agents import RATE, AgentSpec
 from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.rigs import RigCamera
 from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 
-__all__ = ["AgentSpecModel", "MoverSpec", "WaypointSpec"]
+__all__ = ["AgentSpecModel", "MoverSpec", "RigCameraSpec", "WaypointSpec"]
 
 _Clip: TypeAlias = Annotated[float, Number.within(INTRINSICS_LIMITS["near_m"])]
 _ViewName: TypeAlias = Annotated[str, Choice(RENDERED_VIEWS)]
@@ -81,13 +82,12 @@ class MoverSpec(Aimed):
         return self.pose_at(_START if self.position is None else self.position)
 
 
-class AgentSpecModel(LensSpec, Turned):
-    """A camera that the scene brings along."""
+class _CameraEntry(LensSpec, Turned):
+    """Base of entries that describe a camera with a name."""
 
     rules: ClassVar[tuple[Rule, ...]] = (
         *LensSpec.rules,
         *Turned.rules,
-        turned_where_placed,
         below("near", "far", {"near": _DEFAULTS.near_m, "far": _DEFAULTS.far_m}),
         below("near", "depth_range", {"near": _DEFAULTS.near_m, "depth_range": 10.0}),
         distinct_values("views"),
@@ -99,14 +99,11 @@ class AgentSpecModel(LensSpec, Turned):
             r"[a-z][a-z0-9_]{0,62}",
             "a lower-case letter, then lower-case letters, digits or underscores, at most 63",
         ),
-    ] = Field(description="unique among the agents; a part of its topics' names")
+    ] = Field(description="unique among agents, or cameras of its rig; a part of its topics' names")
     near: _Clip = Field(default=_DEFAULTS.near_m, description="nearest depth that is seen [m]")
     far: _Clip = Field(default=_DEFAULTS.far_m, description="farthest depth that is seen [m]")
     depth_range: _Clip = Field(
         default=10.0, description="depth that the 8-bit depth picture shows as black [m]"
-    )
-    rate: Annotated[float, Number.within(RATE)] = Field(
-        default=30.0, description="frames per simulated second [Hz]; 0: on request only"
     )
     views: tuple[_ViewName, ...] = Field(
         default=FIVE_VIEWS, min_length=1, description="what its frames hold"
@@ -114,12 +111,47 @@ class AgentSpecModel(LensSpec, Turned):
     picture: PictureSpec = Field(
         default_factory=PictureSpec, description="exposure, tone curve, noise of its pictures"
     )
+
+
+class RigCameraSpec(_CameraEntry):
+    """A camera of a rig: where it is on the body of its agent."""
+
+    position: Position = Field(
+        default=(0.0, 0.0, 0.0), description="in the frame of the agent's body [m]"
+    )
+
+    def to_camera(self) -> RigCamera:
+        """Return the data type that the simulation takes."""
+        return RigCamera(
+            intrinsics=self.lens(near_m=self.near, far_m=self.far),
+            extrinsics=self.pose_at(self.position),
+            views=self.views,
+            depth_range_m=self.depth_range,
+            picture=self.picture.to_settings(),
+        )
+
+
+class AgentSpecModel(_CameraEntry):
+    """A camera that the scene brings along, or a rig of several."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *_CameraEntry.rules,
+        turned_where_placed,
+        distinct("name", "cameras"),
+    )
+
+    rate: Annotated[float, Number.within(RATE)] = Field(
+        default=30.0, description="frames per simulated second [Hz]; 0: on request only"
+    )
     following: Annotated[bool, Switch()] = Field(
         default=True, description="true if it goes where its mover goes"
     )
     mover: Name | None = optional("the mover it follows; the scene's first if left out")
     position: Position | None = optional("where it starts when it does not follow [m]")
     keep_looking_at: LookAtSpec | None = optional("look-at constraint")
+    cameras: Annotated[tuple[RigCameraSpec, ...], Field(min_length=1, max_length=15)] | None = (
+        optional("makes it a rig: more cameras on its body, captured at one instant")
+    )
 
     def to_agent_spec(self) -> AgentSpec:
         """Return the data type that the simulation takes."""
@@ -134,4 +166,5 @@ class AgentSpecModel(LensSpec, Turned):
             mover=self.mover or "",
             look_at=None if self.keep_looking_at is None else self.keep_looking_at.to_look_at(),
             pose=None if self.position is None else self.pose_at(self.position),
+            cameras={one.name: one.to_camera() for one in self.cameras or ()} or None,
         )

@@ -1,7 +1,6 @@
 """The simulation without threads: one world, one renderer, its agents, and their frames.
 
-`SceneSpec` in, `Frame` and `SceneInfo` out. What operations work on; it knows none of them. Used by
-one thread alone.
+`SceneSpec` in, `Frame` and `SceneInfo` out. Operations work on it; one thread alone uses it.
 """
 
 from __future__ import annotations
@@ -17,7 +16,8 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.render.contract import RenderBackend
-from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
+from sailenv_ros.simulation.agent_record import AgentRecord
+from sailenv_ros.simulation.agent_table import AgentTable
 from sailenv_ros.simulation.clock import Clock
 from sailenv_ros.simulation.editing.editor import SceneEditor
 from sailenv_ros.simulation.editing.scene_writer import SceneWriter

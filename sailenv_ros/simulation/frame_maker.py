@@ -15,7 +15,7 @@ from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.light.relight.relighter import Relighter
 from sailenv_ros.render.contract import RenderBackend
-from sailenv_ros.simulation.agent_table import AgentRecord
+from sailenv_ros.simulation.agent_record import AgentRecord
 from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.system.memory import give_back_freed_memory
 from sailenv_ros.types.camera import MIN_SIZE_PX, Camera, CameraIntrinsics

@@ -92,6 +92,9 @@ class LiveScene:
 
     @property
     def agent_specs(self) -> dict[str, AgentSpec]:
-        """The agents by name, those too that the scene brings and that come right after."""
+        """The agents by name, those too that the scene brings and that come right after.
+
+        Without the cameras of rigs, which go where their agents go.
+        """
         specs = (*self.library.agents_of(self.world.scene), *self.agents.specs)
-        return {spec.name: spec for spec in specs}
+        return {spec.name: spec for spec in specs if not spec.body}

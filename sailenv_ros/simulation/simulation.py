@@ -8,7 +8,7 @@ from __future__ import annotations
 import atexit
 import contextlib
 import inspect
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,7 @@ from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.light_choice import LightChoice, checked_light
 from sailenv_ros.types.listed_views import Views, listed_views
+from sailenv_ros.types.rigs import RigCamera
 from sailenv_ros.types.scene_info import TimeMode
 from sailenv_ros.types.snapshot import SceneContents
 from sailenv_ros.types.views import FIVE_VIEWS, checked_views
@@ -81,6 +82,8 @@ class Simulation(ListenedSimulation):
         Size and lens of that agent instead, such as `load_calibration` reads.
     views : str or iterable of str
         More views of that agent than the usual five.
+    cameras : mapping of str to RigCamera, or None
+        Cameras on that agent's body besides, which `capture_rig` captures.
 
     Raises
     ------
@@ -111,10 +114,11 @@ class Simulation(ListenedSimulation):
         height: int | None = None,
         intrinsics: CameraIntrinsics | None = None,
         views: Views = (),
+        cameras: Mapping[str, RigCamera] | None = None,
     ) -> None:
         Clock(mode, real_time_factor, paused=paused)  # refuses what a loop cannot begin with
         checked_light(light)
-        agent = _own_agent(agent, width, height, intrinsics, listed_views(views))
+        agent = _own_agent(agent, width, height, intrinsics, listed_views(views), cameras)
         super().__init__(SimulationLoop())
         loop = self._loop
         self._own_agent = None if agent is None else agent.name
@@ -306,16 +310,18 @@ def _own_agent(
     height: int | None,
     intrinsics: CameraIntrinsics | None,
     views: tuple[str, ...],
+    cameras: Mapping[str, RigCamera] | None,
 ) -> AgentSpec | None:
     """Return the agent to begin with, if there is to be one: as it is given, or by its size."""
     sizes: dict[str, Any] = {
         k: v for k, v in (("width", width), ("height", height)) if v is not None
     }
-    if not sizes and intrinsics is None and not views:
+    if not sizes and intrinsics is None and not views and cameras is None:
         return agent
     if agent is not None:
         accepted = (
-            "left out where width, height, intrinsics or views are given: they describe an agent"
+            "left out where width, height, intrinsics, views or cameras are given: they describe "
+            "an agent"
         )
         raise InvalidRequest("agent", agent.name, accepted)
     if intrinsics is not None and sizes:
@@ -325,4 +331,5 @@ def _own_agent(
         intrinsics=CameraIntrinsics(**sizes) if intrinsics is None else intrinsics,
         rate_hz=0.0,
         views=checked_views((*FIVE_VIEWS, *views)),
+        cameras=cameras,
     )

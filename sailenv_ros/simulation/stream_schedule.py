@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Sequence
 
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.simulation.agent_table import AgentRecord
+from sailenv_ros.simulation.agent_record import AgentRecord
 from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.live_scene import LiveScene
 

@@ -116,6 +116,13 @@ class Pose:
         )
         return Pose(self.position_m, orientation)
 
+    def carried(self, pose: Pose) -> Pose:
+        """Return the pose in the world of what has a pose in this one's frame."""
+        turned = self.turned(pose.orientation_xyzw)
+        offset = _rotation_matrix(self.orientation_xyzw) @ np.asarray(pose.position_m)
+        x, y, z = (float(a + b) for a, b in zip(self.position_m, offset, strict=True))
+        return Pose((x, y, z), turned.orientation_xyzw)
+
     @property
     def rpy_deg(self) -> tuple[float, float, float]:
         """Roll, pitch, yaw [deg] about fixed axes (REP 103)."""

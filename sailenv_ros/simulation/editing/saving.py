@@ -26,8 +26,11 @@ from sailenv_ros.scene.spec import (
     MoverSpec,
     SceneSpec,
 )
-from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
+from sailenv_ros.simulation.agent_record import AgentRecord
+from sailenv_ros.simulation.agent_table import AgentTable
 from sailenv_ros.simulation.editing.saved_objects import object_entries
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.rigs import body_of
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
@@ -227,16 +230,23 @@ def _agents(
     world: World, spec: SceneSpec, agents: AgentTable, cameras: Collection[str]
 ) -> list[Entry]:
     described = {agent.name: agent for agent in spec.agents}
-    missing = [name for name in cameras if name not in described]
-    for name in missing:
+    for name in cameras:
         agents[name]  # which must exist
+    # A camera of a rig is kept with its agent.
+    kept = dict.fromkeys(body_of(name) or name for name in cameras)
+    missing = [name for name in kept if name not in described]
     wanted = (*described, *missing)
     records = {record.spec.name: record for record in agents}
-    return [_agent(records[name], described.get(name), world) for name in wanted if name in records]
+    return [
+        _agent(records[name], agents.with_cameras(records[name]), described.get(name), world)
+        for name in wanted
+        if name in records
+    ]
 
 
-def _agent(record: AgentRecord, described: AgentSpecModel | None, world: World) -> Entry:
-    spec = replace(record.spec, look_at=record.look_at)
+def _agent(
+    record: AgentRecord, spec: AgentSpec, described: AgentSpecModel | None, world: World
+) -> Entry:
     first = world.mover("").name
     if described is not None:
         begun = described.to_agent_spec()

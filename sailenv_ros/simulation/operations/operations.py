@@ -21,6 +21,7 @@ from sailenv_ros.simulation.operations.models import ModelOperations
 from sailenv_ros.simulation.operations.movers import MoverOperations
 from sailenv_ros.simulation.operations.object_operations import ObjectOperations
 from sailenv_ros.simulation.operations.operation import Operation
+from sailenv_ros.simulation.operations.rig_operations import RigOperations
 from sailenv_ros.simulation.operations.sailenv_names import SailenvNames
 from sailenv_ros.simulation.operations.saving_operations import SavingOperations
 from sailenv_ros.simulation.operations.space_operations import SpaceOperations
@@ -31,6 +32,7 @@ __all__ = ["ALL_OPERATIONS", "Operations", "WorldOperations"]
 
 class WorldOperations(
     AgentOperations,
+    RigOperations,
     LookOperations,
     ObjectOperations,
     JointOperations,

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from sailenv_ros.authoring.viewpoints import ViewScene
     from sailenv_ros.frame.frame import Frame
     from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
-    from sailenv_ros.simulation.agent_table import AgentRecord, AgentTable
+    from sailenv_ros.simulation.agent_record import AgentRecord
+    from sailenv_ros.simulation.agent_table import AgentTable
     from sailenv_ros.simulation.clock import Clock
     from sailenv_ros.simulation.editing.editor import SceneEditor
     from sailenv_ros.simulation.editing.scene_writer import SceneWriter
