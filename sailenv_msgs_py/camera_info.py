@@ -14,10 +14,12 @@ from sensor_msgs.msg import CameraInfo
 from std_msgs.msg import Header
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.types.agents import stereo_baseline_m
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.lens_settings import PINHOLE_FOV
 
-__all__ = ["camera_info_from_intrinsics", "intrinsics_from_camera_info"]
+__all__ = ["camera_info_from_intrinsics", "camera_info_of_frame", "intrinsics_from_camera_info"]
 
 _PLUMB_BOB = "plumb_bob"
 _COEFFICIENTS = 5
@@ -27,16 +29,36 @@ _TILTED = 14
 """Coefficients of OpenCV's law with a tilted sensor, the last two; without the tilt it is ours."""
 
 
-def camera_info_from_intrinsics(intrinsics: CameraIntrinsics, header: Header) -> CameraInfo:
-    """Make the message: model, D and K of the lens, no rectification, P = [K | 0].
+def camera_info_of_frame(frame: Frame, header: Header) -> CameraInfo:
+    """Make the message of a frame's camera; in a rig it knows how far it is from the first."""
+    agents = () if frame.info is None else frame.info.agents
+    own = next((spec for spec in agents if spec.name == frame.agent), None)
+    baseline_m = 0.0 if own is None else stereo_baseline_m(own, agents)
+    return camera_info_from_intrinsics(frame.camera.intrinsics, header, baseline_m)
+
+
+def camera_info_from_intrinsics(
+    intrinsics: CameraIntrinsics, header: Header, baseline_m: float = 0.0
+) -> CameraInfo:
+    """Make the message: model, D and K of the lens, no rectification, P = [K | (-fx B, 0, 0)].
 
     A pin-hole is a `plumb_bob` without distortion. Models that ROS has no name for have ours.
+
+    Parameters
+    ----------
+    intrinsics : CameraIntrinsics
+    header : Header
+    baseline_m : float
+        B, by which it is to the right of the first camera of a rectified rig [m].
     """
     model, coefficients = intrinsics.distortion_model, [*intrinsics.distortion]
     if model == "pinhole":
         model = _PLUMB_BOB
     if model == _PLUMB_BOB:
         coefficients += [0.0] * (_COEFFICIENTS - len(coefficients))
+    projection = intrinsics.P.copy()
+    # The other sign of zero is another byte.
+    projection[0, 3] = -intrinsics.fx * baseline_m if baseline_m else 0.0
     return CameraInfo(
         header=header,
         height=intrinsics.height,
@@ -45,7 +67,7 @@ def camera_info_from_intrinsics(intrinsics: CameraIntrinsics, header: Header) ->
         d=coefficients,
         k=intrinsics.K.ravel(),
         r=intrinsics.R.ravel(),
-        p=intrinsics.P.ravel(),
+        p=projection.ravel(),
     )
 
 

@@ -16,12 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.recipe_cameras import (
+    AnyCamera,
     FixedCamera,
+    MountedCamera,
     OrbitCamera,
     Range,
     RuleCamera,
     WalkCamera,
 )
+from sailenv_ros.dataset.recipe_choices import AGENT_PREFIX
 from sailenv_ros.errors import InvalidRequest, InvalidState, NoFreeSpace
 from sailenv_ros.scene.randomise.selectors import Selector, is_meant
 from sailenv_ros.simulation.script.rule_places import look_lens
@@ -29,7 +32,7 @@ from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.free_space import FreeSpace
 from sailenv_ros.types.geometry import Pose, look_at
 
-__all__ = ["Track", "track_of", "turning"]
+__all__ = ["Track", "place_cameras", "track_of", "turning"]
 
 ATTEMPTS = 200
 """Places that are tried before a camera has none."""
@@ -162,6 +165,35 @@ def _orbit(
             return [look_at(eye, middle) for eye in middle + ways]
     sought = camera.point if camera.object is None else _told(camera.object)
     raise NoFreeSpace(f"no free sight of {sought}")
+
+
+def place_cameras(
+    cameras: Sequence[AnyCamera],
+    tracks: Mapping[str, Track | None],
+    number: int,
+    scene: SynchronousSimulation,
+) -> None:
+    """Bring the agents of a recipe's cameras to where they are in a frame of a clip.
+
+    Parameters
+    ----------
+    cameras : sequence of AnyCamera
+    tracks : mapping of str to Track or None
+        By the cameras' names; None for one that an agent's mover or another camera has.
+    number : int
+        Of the frame in the clip; in the first one the cameras are there without having moved.
+    scene : SynchronousSimulation
+    """
+    for camera in cameras:
+        track = tracks[camera.name]
+        if track is not None:
+            name = f"{AGENT_PREFIX}{camera.name}"
+            scene.set_pose(track[number], teleport=number == 0, agent=name)
+    for camera in cameras:  # now that those are where they are which carry others
+        if isinstance(camera, MountedCamera):
+            carrier = scene.get_agent_pose(agent=f"{AGENT_PREFIX}{camera.on}").pose
+            pose, name = carrier.carried(camera.extrinsics), f"{AGENT_PREFIX}{camera.name}"
+            scene.set_pose(pose, teleport=number == 0, agent=name)
 
 
 TRACKS: Mapping[type, Callable[..., Track]] = MappingProxyType(

@@ -16,7 +16,7 @@ from sailenv_ros.dataset.formats.annotation_rules import AnnotationRules
 from sailenv_ros.dataset.formats.formats import FORMATS, format_class
 from sailenv_ros.dataset.formats.splits import SPLITS
 from sailenv_ros.dataset.formats.view_files import COMPRESSIONS, Compression, compression_fault
-from sailenv_ros.dataset.recipe_cameras import AnyCamera, ordered
+from sailenv_ros.dataset.recipe_cameras import AnyCamera, carriers_stand, ordered
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector, optional
 from sailenv_ros.scene.fields import Name, Rule, SceneModel
 from sailenv_ros.scene.randomise.thing_table import RandomThing
@@ -221,6 +221,7 @@ class DatasetRecipe(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         distinct("name", "cameras", "randomise"),
+        carriers_stand,
         distinct_values("views"),
         distinct_values("formats"),
         _formats_fit,

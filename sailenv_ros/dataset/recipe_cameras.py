@@ -11,12 +11,14 @@ from sailenv_ros.authoring.viewpoints.rule_table import camera_rules, checked_ru
 from sailenv_ros.errors import InvalidEntry
 from sailenv_ros.scene.field_types import Choice, Number, Text, Vector, optional
 from sailenv_ros.scene.fields import Fraction, Name, Position, Rule
-from sailenv_ros.scene.placing import Aimed
+from sailenv_ros.scene.messages import suggestion
+from sailenv_ros.scene.placing import Aimed, Turned
 from sailenv_ros.scene.randomise.selectors import WhichObjects
 from sailenv_ros.scene.rules import at_most_one
 from sailenv_ros.scene.spec_lens import LensSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.validation import is_finite_number
 
 __all__ = [
@@ -24,10 +26,12 @@ __all__ = [
     "AnyCamera",
     "CameraModel",
     "FixedCamera",
+    "MountedCamera",
     "OrbitCamera",
     "Range",
     "RuleCamera",
     "WalkCamera",
+    "carriers_stand",
     "ordered",
 ]
 
@@ -175,7 +179,37 @@ class OrbitCamera(CameraModel):
     )
 
 
+class MountedCamera(CameraModel, Turned):
+    """Is carried by another camera of the recipe: with it, it is a rig."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (*CameraModel.rules, *Turned.rules)
+
+    type: Literal["mounted"] = Field(description="on another camera of the recipe, as in a rig")
+    on: Name = Field(description="the camera that carries it")
+    position: Position = Field(
+        default=(0.0, 0.0, 0.0), description="in the frame of that camera's body [m]"
+    )
+
+    @property
+    def extrinsics(self) -> Pose:
+        """Its pose in the frame of the body of the camera that carries it."""
+        return self.pose_at(self.position)
+
+
+def carriers_stand(recipe: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Refuse a camera that is mounted on one that is not there, or is mounted itself."""
+    listed = recipe.get("cameras")
+    entries = listed if isinstance(listed, list | tuple) else ()
+    cameras = [one for one in entries if isinstance(one, Mapping)]
+    free = [str(one.get("name", "camera")) for one in cameras if one.get("type") != "mounted"]
+    for index, one in enumerate(entries):
+        carrier = one.get("on") if isinstance(one, Mapping) else None
+        if isinstance(carrier, str) and one.get("type") == "mounted" and carrier not in free:
+            near = suggestion(carrier, free, listing="there are")
+            yield ("cameras", index, "on"), f"must be a camera that is not mounted itself; {near}"
+
+
 AnyCamera: TypeAlias = Annotated[
-    AgentCamera | FixedCamera | RuleCamera | WalkCamera | OrbitCamera,
+    AgentCamera | FixedCamera | RuleCamera | WalkCamera | OrbitCamera | MountedCamera,
     Field(discriminator="type"),
 ]

@@ -19,12 +19,12 @@ import numpy as np
 
 from sailenv_ros.authoring.room_rules.names import PREFIX
 from sailenv_ros.authoring.viewpoints import sample_cameras
-from sailenv_ros.dataset.camera_tracks import Track, track_of, turning
+from sailenv_ros.dataset.camera_tracks import Track, place_cameras, track_of, turning
 from sailenv_ros.dataset.findings import Findings
 from sailenv_ros.dataset.frame_sink import FrameSink
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
-from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, RuleCamera
+from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, MountedCamera, RuleCamera
 from sailenv_ros.dataset.recipe_choices import (
     AGENT_PREFIX,
     choices_of,
@@ -210,10 +210,8 @@ class ShardMaker:
         for number, step in enumerate(self._due):
             if number:
                 core.step(step - self._due[number - 1])
+            place_cameras(recipe.cameras, tracks, number, core)
             for camera in recipe.cameras:
-                track = tracks[camera.name]
-                if track is not None:
-                    core.set_pose(track[number], teleport=number == 0, agent=_agent_name(camera))
                 frame = core.capture(recipe.views, agent=_agent_name(camera))
                 self._findings.look_at(frame, scene)
                 writer.add(camera.name, self._kept(frame, camera))
@@ -259,8 +257,8 @@ class ShardMaker:
     def _track(
         self, camera: AnyCamera, clip: Clip, core: SynchronousSimulation, chosen: list[Pose]
     ) -> Track | None:
-        """Return a camera's poses in a clip; None if an agent's mover has it."""
-        if isinstance(camera, AgentCamera):
+        """Return a camera's poses in a clip; None if an agent's mover or another camera has it."""
+        if isinstance(camera, AgentCamera | MountedCamera):
             return None
         times_s = np.array(self._due) / STEPS_PER_SECOND
         random = named_generator(self._recipe.seed, "camera", camera.name, str(clip.number))

@@ -16,7 +16,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
-from sailenv_msgs_py.camera_info import camera_info_from_intrinsics
+from sailenv_msgs_py.camera_info import camera_info_of_frame
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, frame_info_to_msg, header_of_frame
 from sailenv_msgs_py.images import image_from_view
 from sailenv_msgs_py.object_truth_msgs import objects_to_msg
@@ -82,7 +82,7 @@ _LITTLE_ENDIAN_CDR = b"\x00\x01"
 _NEWER_FIELD = "string lesson"
 """The newest field of `FrameInfo`; version 0.2.0 lacked it and the field before it."""
 
-_NEWER_PART_OF_SCENES = "string distortion_model"
+_NEWER_PART_OF_SCENES = "geometry_msgs/Pose extrinsics"
 """The newest field within the parts of `SceneInfo`; version 0.2.0 lacked it."""
 
 _LONGEST_APPENDIX = 64
@@ -133,8 +133,7 @@ def frame_messages(
     views = [view for view in VIEWS if view in frame.views]
     for view in views:
         yield view, _image_parts(image_from_view(view, frame[view], header, copy=False))
-    camera_info = camera_info_from_intrinsics(frame.camera.intrinsics, header)
-    yield "camera_info", (_serialized(camera_info),)
+    yield "camera_info", (_serialized(camera_info_of_frame(frame, header)),)
     pose = pose_stamped_to_msg(frame.camera.pose, header.stamp, WORLD_FRAME_ID)
     yield "pose", (_serialized(pose),)
     if amodal:

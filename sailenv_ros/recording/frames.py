@@ -96,7 +96,13 @@ def recorded_agents(reader: RecordingReader) -> dict[str, str]:
     """Return the agents whose frames were recorded, with what their topics' names begin with."""
     suffix = "/frame_info"
     names = [t.name for t in reader.topics if t.type == FRAME_INFO and t.name.endswith(suffix)]
-    return {name.split("/")[-2]: name[: -len(suffix)] for name in sorted(names)}
+    scenes = [t.name.removesuffix("scene_info") for t in reader.topics if t.type == SCENE_INFO]
+    found = {}
+    for prefix in sorted(name[: -len(suffix)] for name in names):
+        # Below the simulator's namespace, where that is known: cameras of rigs have two names.
+        above = max((scene for scene in scenes if prefix.startswith(scene)), key=len, default="")
+        found[prefix[len(above) :] if above else prefix.split("/")[-1]] = prefix
+    return found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -273,7 +279,7 @@ class RecordedFrames(Sequence[Frame]):
         return message_of(topic.type, present_form(topic, raw.data))
 
     def _scene_infos(self) -> list[tuple[int, SceneInfo]]:
-        name = f"{self._prefix.rpartition('/')[0]}/scene_info"
+        name = f"{self._prefix.removesuffix(f'/{self.agent}')}/scene_info"
         if getattr(self._topics.get(name), "type", "") != SCENE_INFO:
             return []
         if not is_present_form(self._topics[name]):

@@ -151,8 +151,8 @@ def test_the_tree_leads_from_the_world_to_the_optical_frame() -> None:
     """world → agent → agent_camera → optical, multiplied, is the camera's own matrix."""
     node = FakeNode()
     tree = TfTree(node)  # type: ignore[arg-type]  # all that it uses of a node
-    tree.set_agents(("left", "right"))
-    tree.set_agents(("left", "right"))
+    tree.set_agents((AgentSpec(name="left"), AgentSpec(name="right")))
+    tree.set_agents((AgentSpec(name="left"), AgentSpec(name="right")))
     (fixed,) = node.sent["/tf_static"]
     pose = Pose.from_rpy_deg((1, 2, 3), (10, 20, 30))
     tree.publish("right", pose, Time(sec=4))
@@ -173,11 +173,38 @@ def test_the_tree_leads_from_the_world_to_the_optical_frame() -> None:
 
 
 @pytest.mark.usefixtures("tf_installed")
+def test_a_rig_is_one_body_with_fixed_cameras() -> None:
+    """world → body is told once an instant, by whichever camera; body → camera never changes."""
+    extrinsics = {
+        "rig/left": Pose.from_rpy_deg((0.1, 0.06, 0.2), (1, 2, 3)),
+        "rig/wide": Pose.from_rpy_deg((0.0, 0.0, -0.1), (0, 90, 10)),
+    }
+    cameras = [AgentSpec(name=name, extrinsics=pose) for name, pose in extrinsics.items()]
+    node = FakeNode()
+    tree = TfTree(node)  # type: ignore[arg-type]  # all that it uses of a node
+    tree.set_agents((AgentSpec(name="rig"), *cameras))
+    body = Pose.from_rpy_deg((1, 2, 3), (10, 20, 30))
+    for name, pose in extrinsics.items():
+        tree.publish(name, body.carried(pose), Time(sec=4))
+    (fixed,), (moving,) = node.sent["/tf_static"], node.sent["/tf"]
+    links = {
+        (link.header.frame_id, link.child_frame_id): matrix(link)
+        for link in (*fixed.transforms, *moving.transforms)
+    }
+    np.testing.assert_allclose(links["world", "rig"], body.matrix(), atol=1e-12)
+    for name, pose in extrinsics.items():
+        camera = Camera(intrinsics=CameraIntrinsics(), pose=body.carried(pose))
+        product = links["world", "rig"] @ links["rig", name] @ links[name, f"{name}_camera"]
+        product = product @ links[f"{name}_camera", f"{name}/camera_optical_frame"]
+        np.testing.assert_allclose(product, camera.world_from_camera, atol=1e-12)
+
+
+@pytest.mark.usefixtures("tf_installed")
 def test_what_is_sent_is_a_tf_message_of_ros_2() -> None:
     """By Jazzy's own definition of the type: it holds the transforms, there and back as CDR."""
     node = FakeNode()
     tree = TfTree(node)  # type: ignore[arg-type]  # all that it uses of a node
-    tree.set_agents(("left",))
+    tree.set_agents((AgentSpec(name="left"),))
     tree.publish("left", Pose((1.0, 2.0, 3.0)), Time(sec=4))
     store = get_typestore(Stores.ROS2_JAZZY)
     for topic in ("/tf", "/tf_static"):
@@ -225,7 +252,7 @@ def test_without_tf2_msgs_nothing_is_published(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     node = FakeNode()
     tree = TfTree(node)  # type: ignore[arg-type]  # all that it uses of a node
-    tree.set_agents(("left",))
+    tree.set_agents((AgentSpec(name="left"),))
     tree.publish("left", Pose(), Time())
     assert not tree.wanted
     assert node.sent == {}

@@ -27,6 +27,7 @@ def test_the_public_names_are_these() -> None:
         "CameraIntrinsics",
         "Frame",
         "Pose",
+        "RigCamera",
         "Simulation",
         "__version__",
         "load_calibration",

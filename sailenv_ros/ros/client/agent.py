@@ -19,6 +19,7 @@ from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.listed_views import Views, listed_views
 from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.rigs import RigCamera
 from sailenv_ros.types.views import checked_views
 
 __all__ = ["Agent"]
@@ -50,6 +51,8 @@ depth_frame_active : bool
         True if the camera starts on the scene's mover.
     picture : PictureSettings or None
         What is done to its picture; None means the defaults.
+    cameras : mapping of str to RigCamera, or None
+        Cameras on its body besides, which `capture_rig` and `get_frames` capture at one instant.
     name : str
         Name of the agent; empty makes a unique one.
     namespace : str
@@ -90,6 +93,7 @@ depth_frame_active : bool
         depth_range_m: float = 10.0,
         following: bool = True,
         picture: PictureSettings | None = None,
+        cameras: Mapping[str, RigCamera] | None = None,
         name: str = "",
         namespace: str = "/sailenv",
         domain_id: int | None = None,
@@ -125,6 +129,7 @@ depth_frame_active : bool
             views=checked_views([*wanted, *listed_views(views)]),
             following=following,
             picture=PictureSettings() if picture is None else picture,
+            cameras=cameras,
         )
         super().__init__(
             spec,

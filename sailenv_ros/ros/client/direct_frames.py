@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 import select
 import socket
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,11 +27,42 @@ from sailenv_ros.system.frame_socket import connect, is_wanted, receive, send
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.views import VIEWS
 
-__all__ = ["DirectFrames", "Disconnected"]
+__all__ = ["DirectFrames", "Disconnected", "WantedFrame"]
 
 
 class Disconnected(Exception):
     """The simulator ended the connection; frames come by topics from now on."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WantedFrame:
+    """One frame that is asked for.
+
+    Attributes
+    ----------
+    agent : str
+        Whose.
+    views : tuple of str
+    subscribed : tuple of str
+        Topics of the agent that this Agent itself reads, and on which it needs no frame now.
+    intrinsics : CameraIntrinsics
+        That the agent's camera had last, as far as is known.
+    """
+
+    agent: str
+    views: tuple[str, ...]
+    subscribed: tuple[str, ...]
+    intrinsics: CameraIntrinsics
+
+    @property
+    def size_bytes(self) -> int:
+        """Bytes that its arrays take in a segment."""
+        height, width = self.intrinsics.height, self.intrinsics.width
+        return sum(
+            padded(math.prod(VIEWS[view].shape(height, width)) * VIEWS[view].dtypes[-1].itemsize)
+            for view in self.views
+            if view in VIEWS
+        )
 
 
 class DirectFrames:
@@ -67,28 +100,29 @@ class DirectFrames:
         self,
         agent: str,
         views: tuple[str, ...],
-        subscribed: tuple[str, ...],
-        intrinsics: CameraIntrinsics,
+        wanted: Sequence[WantedFrame],
         timeout_s: float,
-    ) -> tuple[FrameInfo, dict[str, NDArray[Any]]] | None:
-        """Have one frame rendered now.
+        *,
+        rig: bool = False,
+    ) -> list[tuple[FrameInfo, dict[str, NDArray[Any]]]] | None:
+        """Have one frame rendered now, or with `rig` one of each of a rig's cameras.
 
         Parameters
         ----------
         agent : str
         views : tuple of str
-        subscribed : tuple of str
-            Topics of the agent that this Agent itself reads, and on which it needs no frame now.
-        intrinsics : CameraIntrinsics
-            That the agent's camera had last, as far as is known.
+            Of a rig, none means each camera's own.
+        wanted : sequence of WantedFrame
+            As far as is known.
         timeout_s : float
             Deadline [s].
+        rig : bool
 
         Returns
         -------
-        info, arrays : FrameInfo, dict of str to array
-            The arrays are nobody else's. None if the camera has other intrinsics by now, so that
-            the frame did not fit.
+        frames : list of (FrameInfo, dict of str to array)
+            The arrays are nobody else's. None if a camera has other intrinsics by now, so that the
+            frames did not fit.
 
         Raises
         ------
@@ -99,22 +133,17 @@ class DirectFrames:
         SimulatorLost, DeadlineExceeded
             If the simulator has ended, or there was no answer in time.
         """
-        height, width = intrinsics.height, intrinsics.width
-        sizes = (
-            math.prod(VIEWS[view].shape(height, width)) * VIEWS[view].dtypes[-1].itemsize
-            for view in views
-            if view in VIEWS
-        )
         try:
-            segment = self._pool.take(max(1, sum(map(padded, sizes))))
+            segment = self._pool.take(max(1, sum(one.size_bytes for one in wanted)))
         except OSError as problem:
             raise Disconnected(str(problem)) from None
         if segment is None:
             raise Disconnected("too many frames are held")
+        subscribed = {one.agent: one.subscribed for one in wanted}
         try:
             header, parts = self._asked(
                 segment,
-                {"agent": agent, "views": views, "subscribed": subscribed},
+                {"agent": agent, "views": views, "subscribed": subscribed, "rig": rig},
                 f"a frame of agent {agent!r}",
                 timeout_s,
             )
@@ -122,25 +151,27 @@ class DirectFrames:
             # An answer may come yet, and be written into the segment: neither is used again.
             self.close()
             raise
-        if "refused" in header or header["places"] is None:
+        if "refused" in header or header["frames"] is None:
             self._pool.give_back(segment)
             if "refused" in header:
                 raise error_from_response(deserialize_message(parts[0], Capture.Response))
             return None
-        info = deserialize_message(parts[0], FrameInfo)
-        # Of the frame itself: another client may have changed the camera a moment ago.
-        height, width = header["height"], header["width"]
         whole = self._pool.lend(segment)
-        arrays = {
-            view: view_of(
-                whole, begin, np.dtype(header["types"][view]), VIEWS[view].shape(height, width)
-            )
-            for view, begin in header["places"].items()
-        }
-        if self._pool.is_short:
-            # Who keeps many frames keeps them in memory of their own.
-            arrays = {view: values.copy() for view, values in arrays.items()}
-        return info, arrays
+        frames = []
+        for told, part in zip(header["frames"], parts, strict=True):
+            # Of the frame itself: another client may have changed the camera a moment ago.
+            height, width = told["height"], told["width"]
+            arrays = {
+                view: view_of(
+                    whole, begin, np.dtype(told["types"][view]), VIEWS[view].shape(height, width)
+                )
+                for view, begin in told["places"].items()
+            }
+            if self._pool.is_short:
+                # Who keeps many frames keeps them in memory of their own.
+                arrays = {view: values.copy() for view, values in arrays.items()}
+            frames.append((deserialize_message(part, FrameInfo), arrays))
+        return frames
 
     def close(self) -> None:
         """Disconnect; frames that are held stay as they are."""

@@ -23,7 +23,7 @@ from sailenv_ros.errors import DeadlineExceeded
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.recording.frames import frame_of_info
-from sailenv_ros.ros.client.direct_frames import DirectFrames, Disconnected
+from sailenv_ros.ros.client.direct_frames import DirectFrames, Disconnected, WantedFrame
 from sailenv_ros.ros.client.frame_sync import Bundle
 from sailenv_ros.ros.client.frame_topics import AgentTopics
 from sailenv_ros.ros.client.remote import RemoteSimulator
@@ -93,11 +93,8 @@ class FrameClient:
         wanted = self._spec.views if views is None else views
         deadline = time.monotonic() + timeout_s
         while time.monotonic() < deadline:
-            more = self._topics.add_views(wanted)
-            # Of each topic the first comes by it: then the simulator knows who reads it.
-            if more or not self._matched or self._by_topics_alone:
+            if self.needs_topics(wanted) or self._by_topics_alone:
                 frame = self._captured_by_topics(wanted, deadline)
-                self._matched = self._matched or frame is not None
             else:
                 frame = self._captured_directly(wanted, deadline)
             if frame is not None:
@@ -123,6 +120,45 @@ class FrameClient:
         self._disconnect()
         self._topics.close()
 
+    # -- one of several that are captured together ---------------------------------------------
+
+    def needs_topics(self, views: tuple[str, ...]) -> bool:
+        """Subscribe to these views; say if a frame has to come by topics now.
+
+        Of each topic the first comes by it: then the simulator knows who reads it.
+        """
+        return self._topics.add_views(views) or not self._matched
+
+    def wanted(self, views: tuple[str, ...]) -> WantedFrame:
+        """Return a frame of this agent as it is asked for directly."""
+        return WantedFrame(
+            agent=self._spec.name,
+            views=views,
+            subscribed=self._topics.subscribed,
+            intrinsics=self._intrinsics(self._remote.info),
+        )
+
+    def await_topics(self, deadline: float) -> None:
+        """Wait for the publishers of all topics, and forget what came so far."""
+        self._topics.await_publishers(_left_s(deadline))
+        self._topics.clear()
+
+    def sent(self, sequence: int, views: tuple[str, ...], deadline: float) -> Frame | None:
+        """Return a captured frame that comes by topics; None if a part of it was lost."""
+        bundle = self._topics.take(sequence, _left_s(deadline), QUIET_S)
+        if bundle is None or set(bundle.images) != set(views):
+            return None
+        frame = self._frame_of_bundle(bundle, deadline)
+        self._matched = self._matched or frame is not None
+        return frame
+
+    def handed_over(
+        self, info: FrameInfo, arrays: Mapping[str, NDArray[Any]], deadline: float
+    ) -> Frame | None:
+        """Return a frame that came directly; None if the scene of its instant was lost."""
+        self._last_captured = info.sequence
+        return self._frame_of(info, arrays, deadline)
+
     # -- through shared memory ---------------------------------------------------------------
 
     def _captured_directly(self, views: tuple[str, ...], deadline: float) -> Frame | None:
@@ -132,10 +168,9 @@ class FrameClient:
         if self._direct is None:
             self._by_topics_alone = True
             return self._captured_by_topics(views, deadline)
-        intrinsics = self._intrinsics(self._remote.info)
         try:
             captured = self._direct.capture(
-                self._spec.name, views, self._topics.subscribed, intrinsics, _left_s(deadline)
+                self._spec.name, views, [self.wanted(views)], _left_s(deadline)
             )
         except Disconnected as problem:
             _log.info("frames come by topics from now on: %s", problem)
@@ -147,9 +182,8 @@ class FrameClient:
             raise
         if captured is None:
             return None
-        info, arrays = captured
-        self._last_captured = info.sequence
-        return self._frame_of(info, arrays, deadline)
+        ((info, arrays),) = captured
+        return self.handed_over(info, arrays, deadline)
 
     def _disconnect(self) -> None:
         if self._direct is not None:
@@ -160,8 +194,7 @@ class FrameClient:
 
     def _captured_by_topics(self, views: tuple[str, ...], deadline: float) -> Frame | None:
         """Have a frame rendered and sent; return None if a part of it was lost."""
-        self._topics.await_publishers(_left_s(deadline))
-        self._topics.clear()
+        self.await_topics(deadline)
         request = Capture.Request(views=list(views))
         service = f"{self._spec.name}/capture"
         response = self._remote.connection.call(
@@ -169,10 +202,7 @@ class FrameClient:
         )
         if not response.success:
             raise error_from_response(response)
-        bundle = self._topics.take(response.sequence, _left_s(deadline), QUIET_S)
-        if bundle is None or set(bundle.images) != set(views):
-            return None
-        return self._frame_of_bundle(bundle, deadline)
+        return self.sent(response.sequence, views, deadline)
 
     def _frame_of_bundle(self, bundle: Bundle, deadline: float) -> Frame | None:
         # The arrays lie on the messages' bytes; nobody else has them.

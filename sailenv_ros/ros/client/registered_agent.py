@@ -11,6 +11,7 @@ import threading
 from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any, TypeVar
 from weakref import WeakSet
 
@@ -19,6 +20,7 @@ from sailenv_ros.errors import InvalidRequest, SailenvError, SimulationClosed
 from sailenv_ros.frame.html import scene_html
 from sailenv_ros.ros.client.frame_client import FrameClient
 from sailenv_ros.ros.client.remote import RemoteSimulator
+from sailenv_ros.ros.client.rig_client import RigClient
 from sailenv_ros.simulation.operations import Operation, Operations
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.picture_settings import PictureSettings
@@ -69,6 +71,7 @@ class RegisteredAgent(Operations):
         self._timeout_s = timeout_s
         self._lock = threading.RLock()
         self._frames: FrameClient | None = None
+        self._rig: RigClient | None = None
         self._worker: ThreadPoolExecutor | None = None
         self._recaptured = 0
         self._remote = RemoteSimulator(
@@ -107,28 +110,38 @@ class RegisteredAgent(Operations):
         with self._lock:
             if self._frames is not None:
                 return
+            cameras = self._spec.cameras
             frames = FrameClient(self._remote, self._spec)
+            rig = None if cameras is None else RigClient(self._remote, self._spec)
             try:
-                self._spec = self.register_agent(self._spec)
+                self._spec = replace(self.register_agent(self._spec), cameras=cameras)
                 frames.begin(self._spec, self._timeout_s)
+                if rig is not None:
+                    rig.begin(self._timeout_s)
             except BaseException:
                 frames.close()
+                if rig is not None:
+                    rig.close()
                 raise
-            self._frames = frames
+            self._frames, self._rig = frames, rig
 
     def delete(self) -> None:
         """Remove the agent from the simulator; a second call does nothing."""
         with self._lock:
             if self._frames is None:
                 return
-            frames, self._frames = self._frames, None
-            self._recaptured += frames.recaptured
+            own = [self._frames, *([] if self._rig is None else [self._rig])]
+            self._recaptured += sum(frames.recaptured for frames in own)
+            names = [self.id, *(() if self._rig is None else self._rig.cameras)]
+            self._frames = self._rig = None
             try:
                 # Before its subscriptions: an agent whose client is gone is removed as it is.
                 self.delete_agent(self.id)
             finally:
-                frames.close()
-                self._remote.connection.forget_services(self.id)
+                for frames in own:
+                    frames.close()
+                for name in names:
+                    self._remote.connection.forget_services(name)
 
     def rejoin(self) -> None:
         """Connect again after `SimulatorLost`, to a simulator that runs again or is started now.
@@ -213,14 +226,19 @@ class RegisteredAgent(Operations):
         self._remote.connection.process.require()
         limit_s = self._deadline_s(operation) if timeout_s is None else timeout_s
         service = SERVICES[operation.name]
-        if service.of_agent and arguments.arguments["agent"] == self.id:
-            frames = self._own_frames
-            if operation is Operations.capture:
-                with self._lock:
-                    return frames.capture(arguments.arguments.get("views"), limit_s)
-        elif operation is Operations.capture:
-            accepted = f"{self.id!r}: an Agent receives its own frames alone"
-            raise InvalidRequest("agent", arguments.arguments["agent"], accepted)
+        agent, views = (arguments.arguments.get(name) for name in ("agent", "views"))
+        if service.of_agent and agent == self.id:
+            _ = self._own_frames  # which must be there
+        if operation is Operations.capture:
+            frames = self._frames_of(agent)
+            with self._lock:
+                return frames.capture(views, limit_s)
+        if operation is Operations.capture_rig and agent == self.id and self._rig is not None:
+            with self._lock:
+                return self._rig.capture(views, limit_s)
+        if operation is Operations.capture_rig:
+            accepted = f"{self.id!r}, made with cameras: an Agent receives its own frames alone"
+            raise InvalidRequest("agent", agent, accepted)
         return self._remote.call(service, arguments, limit_s)
 
     @property
@@ -231,7 +249,8 @@ class RegisteredAgent(Operations):
     @property
     def recaptured(self) -> int:
         """Number of frames requested again because images did not arrive."""
-        return self._recaptured + (0 if self._frames is None else self._frames.recaptured)
+        own = 0 if self._frames is None else self._frames.recaptured
+        return self._recaptured + own + (0 if self._rig is None else self._rig.recaptured)
 
     # -- inside ----------------------------------------------------------------------------
 
@@ -240,6 +259,22 @@ class RegisteredAgent(Operations):
         if self._frames is None:
             raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
         return self._frames
+
+    def _frames_of(self, agent: str) -> FrameClient:
+        """Return the frames of this agent or of a camera of its rig.
+
+        Raises
+        ------
+        InvalidRequest
+            If it is another's.
+        """
+        cameras = {} if self._rig is None else self._rig.cameras
+        if agent == self.id:
+            return self._own_frames
+        if agent in cameras:
+            return cameras[agent]
+        accepted = f"{self.id!r}: an Agent receives its own frames alone"
+        raise InvalidRequest("agent", agent, accepted)
 
     def _deadline_s(self, operation: Operation[..., Any]) -> float:
         takes_long = operation.deadline_s > ORDINARY_S

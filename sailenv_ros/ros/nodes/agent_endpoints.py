@@ -50,7 +50,7 @@ class AgentEndpoints:
             spec = specs.get(name)
             if spec is None or endpoint.publisher.ended or not _same_topics(spec, endpoint.spec):
                 self._endpoints.pop(name).close()
-        self._tf.set_agents(tuple(specs))
+        self._tf.set_agents(info.agents)
         for name, spec in specs.items():
             if name not in self._endpoints:
                 self._add(spec)
@@ -83,7 +83,9 @@ class AgentEndpoints:
             publisher = AgentPublisher(self._node, self._simulation, spec, self._tf)
         except SailenvError:
             return  # deleted meanwhile; the next scene_info says so
-        services = AgentServices(self._node, self._runner, publisher, spec)
+        services = AgentServices(
+            self._node, self._runner, publisher, spec, publisher_of=self.publisher_of
+        )
         self._endpoints[spec.name] = _Endpoint(spec=spec, publisher=publisher, services=services)
 
 

@@ -26,6 +26,7 @@ from sailenv_ros.recording.snapshot_buffer import SnapshotBuffer
 from sailenv_ros.recording.topics import RecordedTopic
 from sailenv_ros.ros.nodes.qos import recorded_qos
 from sailenv_ros.system.presence import present_simulator
+from sailenv_ros.types.rigs import body_of
 from sailenv_ros.types.views import VIEWS
 
 __all__ = ["CLEAN_END_S", "DEPTH", "Recorder"]
@@ -109,12 +110,17 @@ class Recorder:
         self._watch.look()
         if self._agents:
             return
-        suffix = "/frame_info"
-        for name, types in self._node.get_topic_names_and_types():
-            if name.endswith(suffix) and AGENT_TOPICS["frame_info"] in types:
-                owner, _, agent = name[: -len(suffix)].rpartition("/")
-                if owner == self._namespace:
-                    self._subscribe_agent(agent)
+        above, suffix = f"{self._namespace}/", "/frame_info"
+        agents = {
+            name[len(above) : -len(suffix)]
+            for name, types in self._node.get_topic_names_and_types()
+            if name.startswith(above) and name.endswith(suffix)
+            if AGENT_TOPICS["frame_info"] in types
+        }
+        for agent in agents:
+            # Below an agent there are the cameras of its rig, else those of another simulator.
+            if "/" not in agent or body_of(agent) in agents:
+                self._subscribe_agent(agent)
 
     def finish(self) -> None:
         """Count what never came; no message may come after this."""

@@ -13,17 +13,17 @@ import mmap
 import os
 import socket
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from rclpy.serialization import serialize_message
 
 from sailenv_msgs.srv import Capture
 from sailenv_msgs_py.error_codes import error_to_response
 from sailenv_msgs_py.frame_info import frame_info_to_msg, header_of_frame
 from sailenv_ros.errors import InternalFault, InvalidRequest, SailenvError
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.ros.nodes.publishers import AgentPublisher
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.frame_memory import SEGMENTS, map_segment, padded, view_of
@@ -128,27 +128,31 @@ class CaptureServer:
     def _captured(
         self, request: Mapping[str, Any], memory: mmap.mmap
     ) -> tuple[dict[str, Any], list[bytes]]:
-        """Have a frame rendered, written and published; return what is answered."""
+        """Have frames rendered, written and published; return what is answered."""
         try:
-            agent = str(request["agent"])
-            frame = self._simulation.capture([*map(str, request["views"])], agent=agent)
-            publisher = self._publisher_of(agent)
-            if publisher is not None:
-                publisher.publish(frame, beside=frozenset(map(str, request["subscribed"])))
+            agent, views = str(request["agent"]), [*map(str, request["views"])]
+            subscribed = {str(name): topics for name, topics in request["subscribed"].items()}
+            if request.get("rig"):
+                frames = [*self._simulation.capture_rig(views or None, agent=agent).values()]
+            else:
+                frames = [self._simulation.capture(views, agent=agent)]
+            for frame in frames:
+                publisher = self._publisher_of(frame.agent)
+                if publisher is not None:
+                    beside = frozenset(map(str, subscribed.get(frame.agent, ())))
+                    publisher.publish(frame, beside=beside)
         except SailenvError as error:
             return _refused(error)
         except Exception as error:
             _log.exception("a frame could not be made because of an internal error")
             return _refused(InternalFault.of(error))
-        info = frame_info_to_msg(
-            frame, header_of_frame(frame), views=frame.views, depth_range_m=frame.depth_range_m
-        )
-        places, lens = _written(frame.views, memory), frame.camera.intrinsics
-        types = {view: values.dtype.str for view, values in frame.views.items()}
-        return (
-            {"places": places, "types": types, "height": lens.height, "width": lens.width},
-            [serialize_message(info)],
-        )
+        infos = [
+            frame_info_to_msg(
+                frame, header_of_frame(frame), views=frame.views, depth_range_m=frame.depth_range_m
+            )
+            for frame in frames
+        ]
+        return {"frames": _written(frames, memory)}, [serialize_message(info) for info in infos]
 
 
 def _refused(error: SailenvError) -> tuple[dict[str, Any], list[bytes]]:
@@ -157,14 +161,20 @@ def _refused(error: SailenvError) -> tuple[dict[str, Any], list[bytes]]:
     return {"refused": True}, [serialize_message(response)]
 
 
-def _written(views: Mapping[str, NDArray[Any]], memory: mmap.mmap) -> dict[str, int] | None:
-    """Write arrays into a segment and say where each begins [B]; None if they do not fit."""
-    if sum(padded(values.nbytes) for values in views.values()) > len(memory):
+def _written(frames: Sequence[Frame], memory: mmap.mmap) -> list[dict[str, Any]] | None:
+    """Write frames into a segment and say where each array begins [B]; None if they do not fit."""
+    arrays = [values for frame in frames for values in frame.views.values()]
+    if sum(padded(values.nbytes) for values in arrays) > len(memory):
         return None
     whole = np.frombuffer(memory, np.uint8)
-    places, begin = {}, 0
-    for view, values in views.items():
-        np.copyto(view_of(whole, begin, values.dtype, values.shape), values)
-        places[view] = begin
-        begin += padded(values.nbytes)
-    return places
+    written, begin = [], 0
+    for frame in frames:
+        lens, places = frame.camera.intrinsics, {}
+        for view, values in frame.views.items():
+            np.copyto(view_of(whole, begin, values.dtype, values.shape), values)
+            places[view] = begin
+            begin += padded(values.nbytes)
+        types = {view: values.dtype.str for view, values in frame.views.items()}
+        size = {"height": lens.height, "width": lens.width}
+        written.append({"places": places, "types": types, **size})
+    return written

@@ -18,7 +18,7 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import CameraInfo, Image
 
 from sailenv_msgs.msg import FrameInfo
-from sailenv_msgs_py.camera_info import camera_info_from_intrinsics
+from sailenv_msgs_py.camera_info import camera_info_of_frame
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, frame_info_to_msg, header_of_frame
 from sailenv_msgs_py.images import image_from_view
 from sailenv_msgs_py.stamps import stamp_from_ns
@@ -230,9 +230,7 @@ class AgentPublisher:
                 topic.publish(image_from_view(view, frame[view], header, copy=False))
                 sent.append(view)
         if _is_subscribed(self._camera_info):
-            self._camera_info.publish(
-                camera_info_from_intrinsics(frame.camera.intrinsics, copy(header))
-            )
+            self._camera_info.publish(camera_info_of_frame(frame, copy(header)))
         if _is_subscribed(self._frame_info, beside="frame_info" in beside):
             self._frame_info.publish(
                 frame_info_to_msg(frame, header, views=sent, depth_range_m=self._spec.depth_range_m)

@@ -1,5 +1,7 @@
 """`/tf` and `/tf_static`: world → agent → camera → optical frame, where tf2_msgs is installed.
 
+Of a rig: world → agent → each of its cameras → optical frame.
+
 On request also world → object, for every instance.
 
 Frames and agents' names in, transforms out. package.xml declares tf2_msgs, so a ROS 2 installation
@@ -12,6 +14,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import threading
+from collections.abc import Iterable
 from typing import Any
 
 from geometry_msgs.msg import TransformStamped, Vector3
@@ -22,8 +25,10 @@ from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, optical_frame_id
 from sailenv_msgs_py.transforms import pose_to_msg
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.ros.nodes.qos import frame_qos, latched_qos, no_events
+from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
-from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.geometry import Pose, invert
+from sailenv_ros.types.rigs import body_of
 
 __all__ = ["TfTree", "camera_frame_id", "fixed_transforms", "object_frame_id", "transform_of"]
 
@@ -48,11 +53,16 @@ def transform_of(pose: Pose, header: Header, child_frame_id: str) -> TransformSt
     return stamped
 
 
-def fixed_transforms(agent: str) -> list[TransformStamped]:
-    """Return what never changes: agent → camera (they coincide) → optical frame (REP 103)."""
+def fixed_transforms(agent: str, extrinsics: Pose | None = None) -> list[TransformStamped]:
+    """Return what never changes: agent → camera (they coincide) → optical frame (REP 103).
+
+    With the extrinsics of a camera of a rig, body → camera comes first.
+    """
     camera = Camera(intrinsics=CameraIntrinsics(), pose=Pose())
     optical = Pose.from_matrix(camera.world_from_camera)
+    carried = [] if extrinsics is None else [(body_of(agent), extrinsics)]
     return [
+        *(transform_of(pose, Header(frame_id=body), agent) for body, pose in carried),
         transform_of(Pose(), Header(frame_id=agent), camera_frame_id(agent)),
         transform_of(optical, Header(frame_id=camera_frame_id(agent)), optical_frame_id(agent)),
     ]
@@ -74,6 +84,9 @@ class TfTree:
         self._telling = threading.Lock()
         self._message: Any = None
         self._static: dict[str, list[TransformStamped]] = {}
+        self._extrinsics: dict[str, Pose | None] = {}
+        self._bodies: frozenset[str] = frozenset()
+        self._told_bodies: dict[str, tuple[int, int]] = {}
         if importlib.util.find_spec("tf2_msgs") is None:
             return
         self._message = importlib.import_module("tf2_msgs.msg").TFMessage
@@ -90,21 +103,36 @@ class TfTree:
         """True if somebody subscribes to /tf."""
         return self._message is not None and bool(self._moving.get_subscription_count())
 
-    def set_agents(self, names: tuple[str, ...]) -> None:
+    def set_agents(self, agents: Iterable[AgentSpec]) -> None:
         """Take note of the agents that there are."""
-        if self._message is None or set(names) == set(self._static):
+        extrinsics = {spec.name: spec.extrinsics for spec in agents}
+        if self._message is None or extrinsics == self._extrinsics:
             return
-        self._static = {name: fixed_transforms(name) for name in names}
+        self._extrinsics = extrinsics
+        self._bodies = frozenset(map(body_of, extrinsics))
+        self._static = {name: fixed_transforms(name, pose) for name, pose in extrinsics.items()}
         every = [transform for listed in self._static.values() for transform in listed]
         # One latched message holds them all: a reader that comes late gets the last one alone.
         self._fixed.publish(self._message(transforms=every))
 
     def publish(self, agent: str, pose: Pose, stamp: Any) -> None:
-        """Send where an agent is at an instant."""
+        """Send where an agent is at an instant; of a camera of a rig, where its body is.
+
+        Several cameras see one instant: it is told once, as tf2 warns of repeated ones.
+        """
         if not self.wanted:
             return
-        header = Header(stamp=stamp, frame_id=WORLD_FRAME_ID)
-        self._moving.publish(self._message(transforms=[transform_of(pose, header, agent)]))
+        extrinsics = self._extrinsics.get(agent)
+        body = body_of(agent) or agent
+        if extrinsics is not None:
+            pose = Pose.from_matrix(pose.matrix() @ invert(extrinsics.matrix()))
+        with self._telling:
+            at = (stamp.sec, stamp.nanosec)
+            if body in self._bodies and self._told_bodies.get(body) == at:
+                return
+            self._told_bodies[body] = at
+            header = Header(stamp=stamp, frame_id=WORLD_FRAME_ID)
+            self._moving.publish(self._message(transforms=[transform_of(pose, header, body)]))
 
     def publish_instances(self, frame: Frame, stamp: Any) -> None:
         """Send where every instance of a frame is, if that is asked for.

@@ -11,6 +11,7 @@ import pytest
 import yaml
 
 from sailenv_ros.dataset import RecipeError, engine_of, load_job, make_dataset, open_dataset
+from sailenv_ros.types.geometry import Pose
 
 ROOM: dict[str, Any] = {
     "version": 1,
@@ -90,3 +91,27 @@ def test_what_finds_no_place_is_told_on_the_card(tmp_path: Path) -> None:
     made = make_dataset(load_job(path), tmp_path / "made", engine_of(1, None))
     assert made.findings["no place upon the floor for `hall 1`"] == {"den.yaml": 1}
     assert "hall 1" in (tmp_path / "made" / "README.md").read_text()
+
+
+def test_a_mounted_camera_goes_where_its_carrier_goes(tmp_path: Path) -> None:
+    """In every frame and clip; at one instant with it, also where the carrier comes later."""
+    lens = {"width": 48, "height": 36}
+    cameras = [
+        {"name": "right", "type": "mounted", "on": "left", "position": [0, -0.1, 0.05],
+         "rotation": [5, 0, -10], **lens},
+        {"name": "left", "type": "orbit", "point": [0, 0, 1.2], "turn": 90, **lens},
+    ]  # fmt: skip
+    job = load_job(written(tmp_path, cameras=cameras, randomise=[], views=["depth"]))
+    made = make_dataset(job, tmp_path / "rig", engine_of(1, None))
+    assert made.frames == 24
+    extrinsics = Pose.from_rpy_deg((0.0, -0.1, 0.05), (5.0, 0.0, -10.0)).matrix()
+    poses: dict[tuple[int, int], dict[str, Any]] = {}
+    with open_dataset(tmp_path / "rig") as data:
+        for one in data:
+            seen = poses.setdefault((one.clip, one.frame.stamp_ns), {})
+            seen[one.camera] = one.frame.camera.pose.matrix()
+    assert len(poses) == 12
+    for seen in poses.values():
+        np.testing.assert_allclose(seen["right"], seen["left"] @ extrinsics, atol=1e-9)
+    starts = {tuple(seen["left"][:3, 3].round(6)) for seen in poses.values()}
+    assert len(starts) == 12

@@ -122,3 +122,24 @@ def test_annotations_are_chosen_by_the_recipe(tmp_path: Path) -> None:
     assert (rules.least_pixels, rules.has("cube"), rules.has("floor"), rules.has("chair")) == (
         30, True, False, False,
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("carrier", "words"),
+    [
+        ("nobody", "cameras[1].on: must be a camera that is not mounted itself; there are: left"),
+        ("right", "cameras[1].on: must be a camera that is not mounted itself; there are: left"),
+    ],
+)
+def test_a_mounted_camera_has_a_carrier(tmp_path: Path, carrier: str, words: str) -> None:
+    """Another camera of the recipe, which stands or goes by itself."""
+    path = tmp_path / "rig.yaml"
+    path.write_text(
+        "version: 1\nscenes: [{scene: optical}]\nclips: {train: 1}\nviews: [rgb]\n"
+        "formats: [images]\n"
+        "cameras:\n  - {name: left, type: fixed, position: [0, 0, 1]}\n"
+        f"  - {{name: right, type: mounted, on: {carrier}, position: [0, -0.1, 0]}}\n"
+    )
+    with pytest.raises(RecipeError) as caught:
+        load_recipe(path)
+    assert f"{path}:8:38: {words}" in str(caught.value)

@@ -11,12 +11,16 @@ from sailenv_ros.cli import scene_bake
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.recording.channels import AGENT_TOPICS, IMAGE, SCENE_INFO, message_of
+from sailenv_ros.recording.frames import RecordedFrames, recorded_agents
 from sailenv_ros.recording.lockstep import record_lockstep
 from sailenv_ros.recording.progress import progress_line, size_in_bytes
+from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.rigs import RigCamera
 
 pytestmark = pytest.mark.ros
 
@@ -155,3 +159,35 @@ def test_sizes_are_read_with_their_units() -> None:
     for text in ("much", "-1", "inf", ""):
         with pytest.raises(InvalidRequest, match="500M"):
             size_in_bytes(text)
+
+
+def test_a_rig_is_recorded_with_its_cameras(tmp_path: Path) -> None:
+    """Each is found by its name, with the pose, the scene and the P of its place in the rig."""
+    cameras = {
+        "left": RigCamera(intrinsics=SMALL, extrinsics=Pose((0.0, 0.05, 0.0)), views=("depth",)),
+        "right": RigCamera(intrinsics=SMALL, extrinsics=Pose((0.0, -0.05, 0.0)), views=("depth",)),
+    }
+    rig = AgentSpec(name="rig", intrinsics=SMALL, rate_hz=30.0, cameras=cameras)
+    with (
+        Simulation("optical", mode="lockstep", backend="native", agent=rig) as running,
+        RecordingWriter(tmp_path / "bag") as writer,
+    ):
+        live = running.capture_rig()
+        running.reset()
+        assert record_lockstep(running, writer, frames=2) == 6
+    with RecordingReader(tmp_path / "bag") as reader:
+        assert set(recorded_agents(reader)) == {"rig", "rig/left", "rig/right"}
+        for side, tx in (("left", 0.0), ("right", -0.1 * SMALL.fx)):
+            first, second = RecordedFrames(reader, f"rig/{side}")
+            assert (first.stamp_ns, second.stamp_ns) == (0, 33_333_333)
+            assert first["depth"].tobytes() == live[side]["depth"].tobytes()
+            expected = live[side].camera.pose.matrix()
+            assert abs(first.camera.pose.matrix() - expected).max() < 1e-9
+            assert first.info is not None
+            extrinsics = {one.name: one.extrinsics for one in first.info.agents}
+            assert extrinsics[f"rig/{side}"] == cameras[side].extrinsics
+            with (tmp_path / "bag/bag_0.mcap").open("rb") as stream:
+                topics = [f"/sailenv/rig/{side}/camera_info"]
+                messages = [m for *_, m in make_reader(stream).iter_messages(topics=topics)]
+            told = message_of("sensor_msgs/msg/CameraInfo", messages[0].data)
+            assert told.p[3] == pytest.approx(tx)

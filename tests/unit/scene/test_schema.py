@@ -175,8 +175,14 @@ def test_the_reference_tables_have_every_key_of_every_kind() -> None:
         (kinds[name],) = (title for title in titles if name in title.split(", "))
     described = {name: kind for name, kind in schema["$defs"].items() if kind.get("properties")}
     described |= behaviours
-    assert described.keys() | {"", "_light", "_random", "_behaviour"} == kinds.keys()
-    shared = {"Light": "Every light", "Random": "Every entry", "MaterialSpec": "A surface"}
+    assert described.keys() | {"", "_camera", "_light", "_random", "_behaviour"} == kinds.keys()
+    cameras = dict.fromkeys(("AgentSpecModel", "RigCameraSpec"), "Every camera")
+    shared = {
+        **cameras,
+        "Light": "Every light",
+        "Random": "Every entry",
+        "MaterialSpec": "A surface",
+    }
     for name, kind in described.items():
         keys = {
             key
