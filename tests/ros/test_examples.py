@@ -149,3 +149,13 @@ def test_attention_follows_what_moves(tmp_path: Path) -> None:
     frames = [int(number) for number, _ in labels]
     assert min(after - before for before, after in itertools.pairwise(frames)) >= 100
     assert {name for _, name in labels} == {"cylinder", "cube", "sphere"}
+
+
+def test_a_rig_sees_one_instant(tmp_path: Path) -> None:
+    """All cameras of it; they see much of what the others see, and not all."""
+    out = run_for_a_picture("17_camera_rig", tmp_path)
+    assert out.count("1 instant") == 5
+    shares = [float(share) for share in re.findall(r"([\d.]+)%", out)]
+    assert len(shares) == 10
+    assert 40.0 < min(shares)
+    assert max(shares) < 100.0

@@ -13,7 +13,6 @@ from sailenv_msgs.srv import CaptureRig, DeleteAgent, RegisterAgent
 from sailenv_ros import Agent, CameraIntrinsics, Pose, RigCamera
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame.stereo import disparity
-from tests.ros.conftest import SMALL
 from tests.support.ros_probe import Probe
 from tests.support.waiting import until
 
@@ -45,7 +44,7 @@ RIG = {
 @pytest.fixture
 def rig(keeper: Agent) -> Iterator[Agent]:
     keeper.reset()
-    with Agent(**SMALL, name="head", cameras=RIG, namespace=NAMESPACE) as rig:
+    with Agent(width=160, height=120, name="head", cameras=RIG, namespace=NAMESPACE) as rig:
         yield rig
 
 
@@ -93,7 +92,7 @@ def test_an_agent_without_cameras_is_no_rig(keeper: Agent) -> None:
 def test_a_rig_that_ends_leaves_nothing(keeper: Agent) -> None:
     """Its cameras go with it, and its name is free again."""
     for _ in range(2):
-        with Agent(**SMALL, name="head", cameras=RIG, namespace=NAMESPACE) as rig:
+        with Agent(width=160, height=120, name="head", cameras=RIG, namespace=NAMESPACE) as rig:
             assert "head/left" in {one.name for one in rig.info.agents}
         keeper.step(1)
         assert all(not one.name.startswith("head") for one in keeper.info.agents)

@@ -130,17 +130,16 @@ class RegisteredAgent(Operations):
         with self._lock:
             if self._frames is None:
                 return
-            own = [self._frames, *([] if self._rig is None else [self._rig])]
-            self._recaptured += sum(frames.recaptured for frames in own)
-            names = [self.id, *(() if self._rig is None else self._rig.cameras)]
+            frames, rig, self._recaptured = self._frames, self._rig, self.recaptured
             self._frames = self._rig = None
             try:
                 # Before its subscriptions: an agent whose client is gone is removed as it is.
                 self.delete_agent(self.id)
             finally:
-                for frames in own:
-                    frames.close()
-                for name in names:
+                frames.close()
+                if rig is not None:
+                    rig.close()
+                for name in (self.id, *(() if rig is None else rig.cameras)):
                     self._remote.connection.forget_services(name)
 
     def rejoin(self) -> None:
@@ -260,7 +259,7 @@ class RegisteredAgent(Operations):
             raise SimulationClosed(f"agent {self.id!r} was deleted; register it first")
         return self._frames
 
-    def _frames_of(self, agent: str) -> FrameClient:
+    def _frames_of(self, agent: object) -> FrameClient:
         """Return the frames of this agent or of a camera of its rig.
 
         Raises
@@ -271,7 +270,7 @@ class RegisteredAgent(Operations):
         cameras = {} if self._rig is None else self._rig.cameras
         if agent == self.id:
             return self._own_frames
-        if agent in cameras:
+        if isinstance(agent, str) and agent in cameras:
             return cameras[agent]
         accepted = f"{self.id!r}: an Agent receives its own frames alone"
         raise InvalidRequest("agent", agent, accepted)
