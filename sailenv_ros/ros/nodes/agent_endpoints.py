@@ -9,6 +9,7 @@ from rclpy.node import Node
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.ros.nodes.agent_services import AgentServices
 from sailenv_ros.ros.nodes.diagnostics import AgentCounts
+from sailenv_ros.ros.nodes.disparity_topics import DisparityTopics
 from sailenv_ros.ros.nodes.publishers import AgentPublisher
 from sailenv_ros.ros.nodes.requests import OperationRunner
 from sailenv_ros.ros.nodes.tf_tree import TfTree
@@ -38,6 +39,7 @@ class AgentEndpoints:
         self, node: Node, simulation: Simulation, runner: OperationRunner, tf: TfTree
     ) -> None:
         self._tf = tf
+        self._disparity = DisparityTopics(node)
         self._node = node
         self._simulation = simulation
         self._runner = runner
@@ -51,6 +53,7 @@ class AgentEndpoints:
             if spec is None or endpoint.publisher.ended or not _same_topics(spec, endpoint.spec):
                 self._endpoints.pop(name).close()
         self._tf.set_agents(info.agents)
+        self._disparity.set_agents(info.agents)
         for name, spec in specs.items():
             if name not in self._endpoints:
                 self._add(spec)
@@ -70,6 +73,7 @@ class AgentEndpoints:
         """Remove all of them."""
         while self._endpoints:
             self._endpoints.popitem()[1].close()
+        self._disparity.set_agents(())
 
     def _set_rate(self, endpoint: _Endpoint, spec: AgentSpec) -> None:
         try:
@@ -80,7 +84,9 @@ class AgentEndpoints:
 
     def _add(self, spec: AgentSpec) -> None:
         try:
-            publisher = AgentPublisher(self._node, self._simulation, spec, self._tf)
+            publisher = AgentPublisher(
+                self._node, self._simulation, spec, self._tf, self._disparity
+            )
         except SailenvError:
             return  # deleted meanwhile; the next scene_info says so
         services = AgentServices(

@@ -27,6 +27,7 @@ from sailenv_ros.errors import DeadlineExceeded, SailenvError, SimulationClosed
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.ros.nodes.derived_topics import DerivedTopics
 from sailenv_ros.ros.nodes.diagnostics import AgentCounts, FrameCounter
+from sailenv_ros.ros.nodes.disparity_topics import DisparityTopics
 from sailenv_ros.ros.nodes.forward_motion_topics import ForwardMotionTopics
 from sailenv_ros.ros.nodes.object_topics import ObjectTopics
 from sailenv_ros.ros.nodes.qos import frame_qos, no_events, overridable
@@ -54,9 +55,19 @@ class AgentPublisher:
         As registered.
     tf : TfTree
         Told where the agent is, as the topic `pose` is.
+    disparity : DisparityTopics
+        Told each frame, as it may be one of a stereo pair's.
     """
 
-    def __init__(self, node: Node, simulation: Simulation, spec: AgentSpec, tf: TfTree) -> None:
+    def __init__(
+        self,
+        node: Node,
+        simulation: Simulation,
+        spec: AgentSpec,
+        tf: TfTree,
+        disparity: DisparityTopics,
+    ) -> None:
+        self._disparity = disparity
         self._tf = tf
         self._node = node
         self._simulation = simulation
@@ -185,7 +196,7 @@ class AgentPublisher:
 
     def _wanted_views(self) -> tuple[str, ...]:
         shown = self._derived.wanted_views() | self._late.wanted_views()
-        shown |= self._objects.wanted_views()
+        shown |= self._objects.wanted_views() | self._disparity.wanted_views(self._spec.name)
         wanted = tuple(
             view for view, topic in self._images.items() if view in shown or _is_subscribed(topic)
         )
@@ -244,6 +255,7 @@ class AgentPublisher:
         self._derived.publish(frame, header)
         self._late.publish(frame)
         self._objects.publish(frame, header)
+        self._disparity.publish(frame)
         self._counter.add(frame, time.perf_counter() - began)
         return tuple(sent)
 

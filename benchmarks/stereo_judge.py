@@ -1,0 +1,98 @@
+"""Let OpenCV's semi-global matcher (SGBM) judge the stereo pictures of a rig against its disparity.
+
+    python benchmarks/stereo_judge.py [--scene NAME] [--size WxH] [--baseline M] [--shift PX]
+
+A rectified pair looks around in a room. Of the pixels that both cameras see, the share is printed
+whose estimated disparity is wrong by more than 2 px (bad-2), without and with those that the
+matcher leaves out, and the median error; of the pixels that the left camera alone sees, the share
+that the matcher leaves out. `--shift` adds an error to the true disparity, which must be found.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+import cv2
+import numpy as np
+
+from sailenv_ros import AgentSpec, CameraIntrinsics, Pose, RigCamera, look_at
+from sailenv_ros.frame.stereo import disparity
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.synchronous import SynchronousSimulation
+
+PLACES = 8
+RANGE_PX, BLOCK = 128, 5
+
+
+def matcher() -> cv2.StereoSGBM:
+    """Return SGBM with the penalties that OpenCV's manual recommends."""
+    return cv2.StereoSGBM_create(
+        minDisparity=0,
+        numDisparities=RANGE_PX,
+        blockSize=BLOCK,
+        P1=8 * 3 * BLOCK**2,
+        P2=32 * 3 * BLOCK**2,
+        disp12MaxDiff=1,
+        uniquenessRatio=5,
+        speckleWindowSize=100,
+        speckleRange=2,
+        mode=cv2.STEREO_SGBM_MODE_HH,
+    )
+
+
+def main() -> None:
+    """Look around and print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scene", default="room_01")
+    parser.add_argument("--size", default="640x480")
+    parser.add_argument("--baseline", type=float, default=0.12, metavar="M")
+    parser.add_argument("--shift", type=float, default=0.0, metavar="PX")
+    arguments = parser.parse_args()
+    width, height = (int(number) for number in arguments.size.split("x"))
+    lens = CameraIntrinsics(width=width, height=height)
+    views, right = ("rgb", "depth", "instance"), Pose((0.0, -arguments.baseline, 0.0))
+    cameras = {
+        "left": RigCamera(intrinsics=lens, views=views),
+        "right": RigCamera(intrinsics=lens, extrinsics=right, views=views),
+    }
+    core = SynchronousSimulation(
+        SceneLibrary(drafts=False),
+        arguments.scene,
+        NativeRenderer(),
+        mode="lockstep",
+        real_time_factor=1.0,
+        seed=0,
+        paused=False,
+    )
+    core.register_agent(AgentSpec(name="rig", following=False, cameras=cameras))
+    errors, unseen = [], []
+    for number in range(PLACES):
+        angle = math.tau * number / PLACES
+        eye = (0.9 * math.cos(angle), 0.9 * math.sin(angle), 1.4)
+        core.set_pose(look_at(eye, (-eye[0], -eye[1], 0.7)), agent="rig", teleport=True)
+        frames = core.capture_rig(agent="rig")
+        left, other = (frames[name]["rgb"] for name in cameras)
+        true = disparity(*(frames[name] for name in cameras))
+        found = matcher().compute(left, other) / 16.0
+        wanted = true.disparity + arguments.shift
+        # SGBM finds nothing within its range of the left border.
+        searched = (np.arange(width) >= RANGE_PX) & (true.disparity < RANGE_PX - 1)
+        seen = true.visible & searched & (true.disparity > 0.0)
+        errors.append(np.where(found >= 0.0, np.abs(found - wanted), np.inf)[seen])
+        unseen.append((found < 0.0)[true.occluded & searched])
+    core.close()
+    error, left_out = np.concatenate(errors), np.concatenate(unseen)
+    estimated = error[np.isfinite(error)]
+    print(
+        f"{arguments.scene}, {width} x {height}, {PLACES} pairs, {len(error)} pixels seen by both"
+    )
+    print(f"estimated: {len(estimated) / len(error):.1%}")
+    print(f"bad-2: {(estimated > 2.0).mean():.2%} of those, {(error > 2.0).mean():.2%} of all")
+    print(f"median error: {np.median(estimated):.3f} px")
+    print(f"seen by the left camera alone: {left_out.mean():.1%} left out by the matcher")
+
+
+if __name__ == "__main__":
+    main()
