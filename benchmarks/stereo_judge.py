@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import argparse
 import math
+from typing import Any
 
-import cv2
+import cv2 as typed_cv2
 import numpy as np
 
 from sailenv_ros import AgentSpec, CameraIntrinsics, Pose, RigCamera, look_at
@@ -22,11 +23,13 @@ from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 
+cv2: Any = typed_cv2  # whose types lack much of what it has
+
 PLACES = 8
 RANGE_PX, BLOCK = 128, 5
 
 
-def matcher() -> cv2.StereoSGBM:
+def matcher() -> Any:
     """Return SGBM with the penalties that OpenCV's manual recommends."""
     return cv2.StereoSGBM_create(
         minDisparity=0,

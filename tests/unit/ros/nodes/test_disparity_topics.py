@@ -107,7 +107,7 @@ def test_the_message_is_ros_2_s() -> None:
             topics.publish(frame)
     (message,) = node.sent["head/disparity"]
     store = get_typestore(Stores.ROS2_JAZZY)
-    kind = store.types["stereo_msgs/msg/DisparityImage"]
+    kind: Any = store.types["stereo_msgs/msg/DisparityImage"]
     names = [one.name for one in dataclasses.fields(kind)]
 
     def travelled(name: str, type_name: str) -> Any:
@@ -124,7 +124,7 @@ def test_the_message_is_ros_2_s() -> None:
         if name != "__msgtype__"
     }
     data = store.serialize_cdr(kind(**values), kind.__msgtype__)
-    back = store.deserialize_cdr(data, kind.__msgtype__)
+    back: Any = store.deserialize_cdr(data, kind.__msgtype__)
     assert back.t == np.float32(0.4)
     assert (back.image.height, back.valid_window.width) == (48, 64)
 
