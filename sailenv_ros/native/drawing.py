@@ -7,13 +7,14 @@ Structures of `render_types` come in; arrays of the caller are filled. One `Draw
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.lens_tables import CUBE_FACE, LENS_TABLE, LENS_TILE
 from sailenv_ros.native.library import Kernel, checked
+from sailenv_ros.native.records import RecordKernel
 from sailenv_ros.native.render_types import (
     DRAW_LIST,
     INSTANCES,
@@ -26,9 +27,17 @@ from sailenv_ros.native.render_types import (
     record,
 )
 
-__all__ = ["ROW_PADDING", "AmodalDrawing", "Drawing", "mip_chain", "structure_sizes"]
+__all__ = ["ROW_PADDING", "AmodalDrawing", "Drawing", "DrawnPoses", "mip_chain", "structure_sizes"]
 
 _PICTURE = Kernel("draw_picture", "iaaaaaaa")
+_ROLLING = RecordKernel(
+    "rolling_picture",
+    ("array", "scratch view instances parts glass light outputs"),
+    ("integer", "poses lines"),
+    ("array", "camera_from_world world_from_camera"),
+    ("integer", "moving_count"),
+    ("array", "moving world_from_moving"),
+)
 _SHADOW = Kernel("draw_shadow_map", "iaaaaiaaa")
 _AMODAL = Kernel("draw_amodal", "iaaaaaia")
 _AMODAL_CROPS = Kernel("copy_amodal", "aia")
@@ -42,6 +51,23 @@ ROW_PADDING = 8
 
 AMODAL_NUMBERS = 10
 """Numbers of an object's result in `AmodalDrawing.draw`."""
+
+
+class DrawnPoses(NamedTuple):
+    """Where a camera and what moves stand at each row of a sensor.
+
+    Attributes
+    ----------
+    camera_from_world, world_from_camera : (R, 4, 4) float64
+    moving : (M,) int64
+        Rows of the instances that move; the others stand as `INSTANCES` says.
+    world_from_moving : (R, M, 4, 4) float64
+    """
+
+    camera_from_world: NDArray[np.float64]
+    world_from_camera: NDArray[np.float64]
+    moving: NDArray[np.int64]
+    world_from_moving: NDArray[np.float64]
 
 
 class _Scratch:
@@ -89,6 +115,7 @@ class Drawing(_Scratch):
         surface: NDArray[np.float32] | None = None,
         radiance: NDArray[np.float16] | None = None,
         attributes: Sequence[NDArray[np.float32] | None] = (),
+        poses: DrawnPoses | None = None,
     ) -> None:
         """Draw what a camera sees.
 
@@ -106,6 +133,9 @@ class Drawing(_Scratch):
             Takes exposed linear radiance, and the share of it that came from around.
         attributes : sequence of (H, W, C) float32 or None
             Take the views of source 'geometry', in their order; see `types.views.VIEWS`.
+        poses : DrawnPoses or None
+            Of a rolling shutter, for each row or, where the picture has samples, each so many
+            rows; counts instead of the view's. None draws all rows from one place.
         """
         height, width = int(view["height"][0]), int(view["width"][0])
         checked("view", view, VIEW, (1,))
@@ -125,15 +155,27 @@ class Drawing(_Scratch):
             radiance_at=address(radiance),
         )
         outputs["attributes_at"][0, : len(attributes)] = [address(a) for a in attributes]
-        _PICTURE(
+        listed = view, instances, _listed(parts), _listed(glass), light, outputs
+        if poses is None:
+            _PICTURE(self._threads, self._handle, *listed)
+            return
+        names = ("view", "instances", "parts", "glass", "light", "outputs")
+        rows, moving = len(poses.camera_from_world), len(poses.moving)
+        checked("camera_from_world", poses.camera_from_world, np.float64, (rows, 4, 4))
+        checked("world_from_camera", poses.world_from_camera, np.float64, (rows, 4, 4))
+        checked("moving", poses.moving, np.int64, (moving,))
+        checked("world_from_moving", poses.world_from_moving, np.float64, (rows, moving, 4, 4))
+        _ROLLING(
             self._threads,
-            self._handle,
-            view,
-            instances,
-            _listed(parts),
-            _listed(glass),
-            light,
-            outputs,
+            scratch=self._handle,
+            **dict(zip(names, listed, strict=True)),
+            poses=rows,
+            lines=height // max(rows, 1),
+            camera_from_world=poses.camera_from_world,
+            world_from_camera=poses.world_from_camera,
+            moving_count=moving,
+            moving=poses.moving,
+            world_from_moving=poses.world_from_moving,
         )
 
     def shadow_map(

@@ -24,7 +24,7 @@ from sailenv_ros.native.lens_models import MOST_COEFFICIENTS
 from sailenv_ros.native.library import checked
 from sailenv_ros.native.records import Fields, RecordKernel
 
-__all__ = ["MOTION_OUTPUTS", "BentLenses", "move_points", "transform_points"]
+__all__ = ["MOTION_OUTPUTS", "BentLenses", "RowMotions", "move_points", "transform_points"]
 
 _PIXELS: tuple[Fields, ...] = (
     ("integer", "height width"),
@@ -43,6 +43,8 @@ _MOVE = RecordKernel(
     ("integer", "same_lens to_height to_width"),
     ("array", "to_depth to_instance"),
     ("number", "tolerance duration"),
+    ("array", "own_from_rows rows_from_own at_rest"),
+    ("integer", "row_poses"),
     ("array", "flow scene_flow valid occluded out_of_view hidden"),
 )
 _TRANSFORM = RecordKernel(
@@ -76,6 +78,24 @@ class BentLenses(NamedTuple):
     same: bool
 
 
+class RowMotions(NamedTuple):
+    """Poses by rows of two pictures, for groups of instances that move alike.
+
+    Attributes
+    ----------
+    own_from_rows : (R, H, 3, 4) float64
+        Axes of the group's own from the optical frame of each row of the one picture.
+    rows_from_own : (R, H', 3, 4) float64
+        The optical frame of each row of the other picture from the group's axes.
+    at_rest : (R,) bool
+        Groups that do not move at all, as the camera.
+    """
+
+    own_from_rows: NDArray[np.float64]
+    rows_from_own: NDArray[np.float64]
+    at_rest: NDArray[np.bool_]
+
+
 MOTION_OUTPUTS: Mapping[str, tuple[Any, tuple[int, ...]]] = {
     "flow": (np.float32, (2,)),
     "scene_flow": (np.float32, (3,)),
@@ -101,6 +121,7 @@ def move_points(
     outputs: Mapping[str, NDArray[Any]],
     *,
     bent: BentLenses | None = None,
+    by_rows: RowMotions | None = None,
     duration_s: float = 1.0,
     threads: int,
 ) -> None:
@@ -141,6 +162,9 @@ def move_points(
             Where the other picture does not show it, for whatever reason.
     bent : BentLenses or None
         Where a lens is no pin-hole. Its picture's depths are distances along the rays.
+    by_rows : RowMotions or None
+        Where a shutter rolls; counts instead of `motions`, with its groups as rows. Excludes
+        ``scene_flow``.
     duration_s : float
         From the one picture to the other [s], negative if that is the earlier one; 1 gives flow
         in pixels.
@@ -172,6 +196,11 @@ def move_points(
     for name, array in outputs.items():
         dtype, channels = MOTION_OUTPUTS[name]
         checked(name, array, dtype, (*depth.shape, *channels))
+    if by_rows is not None:
+        groups = len(motions)
+        checked("own_from_rows", by_rows.own_from_rows, np.float64, (groups, len(depth), 3, 4))
+        checked("rows_from_own", by_rows.rows_from_own, np.float64, (groups, None, 3, 4))
+        checked("at_rest", by_rows.at_rest, np.bool_, (groups,))
     _MOVE(
         threads,
         **pixels,
@@ -191,6 +220,10 @@ def move_points(
         to_instance=to_instance,
         tolerance=tolerance,
         duration=duration_s,
+        own_from_rows=None if by_rows is None else by_rows.own_from_rows,
+        rows_from_own=None if by_rows is None else by_rows.rows_from_own,
+        at_rest=None if by_rows is None else by_rows.at_rest,
+        row_poses=0 if by_rows is None else by_rows.rows_from_own.shape[1],
         **{name: outputs.get(name) for name in MOTION_OUTPUTS},
     )
 

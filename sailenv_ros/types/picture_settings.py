@@ -1,7 +1,7 @@
-"""Settings of the sensors of an agent's camera: exposure, tone curve, effects, depth sensor.
+"""Settings of the sensors of an agent's camera: shutter, exposure, tone curve, effects, depth sensor.
 
-Travels in `Camera` to the renderer. Concerns the picture and the measured depth alone: no ground
-truth depends on it.
+Travels in `Camera` to the renderer. The shutter says at which instants rows are exposed. All else
+concerns the picture and the measured depth alone: no ground truth depends on it.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ __all__ = [
     "NAMES",
     "PictureChanges",
     "PictureSettings",
+    "ReadOut",
     "ToneCurve",
     "picture_choices",
 ]
@@ -30,6 +31,7 @@ MAX_SIZE_PX = 4096
 """Most pixels, or samples, along a side of a picture."""
 
 ToneCurve = Literal["filmic", "linear"]
+ReadOut = Literal["down", "up"]
 
 LIMITS: Mapping[str, Bounds] = {
     "exposure": Bounds(least=-16.0, most=16.0, unit="stops"),
@@ -39,13 +41,20 @@ LIMITS: Mapping[str, Bounds] = {
     "bloom": Bounds(least=0.0, most=1.0),
     "full_well": Bounds(least=0.0, most=1e7, unit="electrons"),
     "read_noise": Bounds(least=0.0, most=1e4, unit="electrons"),
+    "exposure_time_ms": Bounds(least=0.0, most=100.0, unit="ms"),
+    "exposure_samples": Bounds(least=1, most=64, whole=True),
+    "row_time_us": Bounds(least=0.0, most=1000.0, unit="µs"),
+    "gain": Bounds(least=0.0, most=8.0, unit="stops"),
+    "vignetting": Bounds(least=0.0, most=1.0),
+    "lateral_colour": Bounds(least=-0.01, most=0.01),
+    "jpeg_quality": Bounds(least=0, most=100, whole=True),
 }
 """Bounds of each number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PictureSettings:
-    """Settings that change the picture and the measured depth, and nothing else.
+    """Settings that change the picture and the measured depth; those of the shutter, instants too.
 
     Attributes
     ----------
@@ -74,6 +83,25 @@ class PictureSettings:
     depth_sensor : str
         The sensor of the view ``measured_depth``: ``ideal``, or the name of a file in
         `config/sensors`.
+    exposure_time_ms : float
+        How long each row is exposed [ms], 0 to 100: what moves then is blurred. Ground truth is of
+        the middle.
+    exposure_samples : int
+        Instants of the exposure whose light is averaged, 1 to 64; 1: the middle alone.
+    row_time_us : float
+        Time from a row to the next one [µs], 0 to 1000; above 0 the shutter rolls, and each row of
+        each view belongs to its own instant.
+    read_out : {'down', 'up'}
+        Whether the first row is exposed first, or the last one.
+    gain : float
+        Stops that the electrons are amplified by, with their noise, 0 to 8.
+    vignetting : float
+        How far light falls off with the angle θ from the axis as cos⁴ θ, 0 (off) to 1.
+    lateral_colour : float
+        By which share the red picture is larger than the green one, and the blue one smaller, -0.01
+        to 0.01. Ground truth is of the green one.
+    jpeg_quality : int
+        Quality of the JPEG file that the picture has been in, 1 to 100; 0: none.
 
     Raises
     ------
@@ -91,6 +119,14 @@ class PictureSettings:
     full_well: float = 0.0
     read_noise: float = 0.0
     depth_sensor: str = IDEAL
+    exposure_time_ms: float = 0.0
+    exposure_samples: int = 8
+    row_time_us: float = 0.0
+    read_out: ReadOut = "down"
+    gain: float = 0.0
+    vignetting: float = 0.0
+    lateral_colour: float = 0.0
+    jpeg_quality: int = 0
 
     def __post_init__(self) -> None:
         for name, choices in picture_choices().items():
@@ -98,6 +134,11 @@ class PictureSettings:
                 raise UnknownName(name, str(getattr(self, name)), choices)
         checked_flag("smooth_edges", self.smooth_edges)
         check_bounds(self, LIMITS)
+
+    @property
+    def rolls(self) -> bool:
+        """Whether rows are exposed one after the other."""
+        return self.row_time_us > 0.0
 
     @staticmethod
     def checked(what: str, settings: object) -> PictureSettings:
@@ -135,7 +176,11 @@ class PictureSettings:
 
 def picture_choices() -> dict[str, tuple[str, ...]]:
     """Return what is accepted for each setting that is a name."""
-    return {"tone_curve": get_args(ToneCurve), "depth_sensor": depth_sensor_names()}
+    return {
+        "tone_curve": get_args(ToneCurve),
+        "depth_sensor": depth_sensor_names(),
+        "read_out": get_args(ReadOut),
+    }
 
 
 class PictureChanges(TypedDict, total=False):
@@ -151,6 +196,14 @@ class PictureChanges(TypedDict, total=False):
     full_well: float
     read_noise: float
     depth_sensor: str
+    exposure_time_ms: float
+    exposure_samples: int
+    row_time_us: float
+    read_out: ReadOut
+    gain: float
+    vignetting: float
+    lateral_colour: float
+    jpeg_quality: int
 
 
 NAMES: tuple[str, ...] = tuple(setting.name for setting in fields(PictureSettings))

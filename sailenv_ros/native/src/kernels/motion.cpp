@@ -34,6 +34,11 @@
     FIELD(const uint16_t*, to_instance) /* (H', W'), or null: depth alone decides */      \
     FIELD(double, tolerance)            /* share of its depth a hidden point is behind */ \
     FIELD(double, duration)             /* what displacements in the picture are over */  \
+    FIELD(const double*, own_from_rows) /* (R, H, 3, 4): other axes from each row's, */   \
+                                        /* instead of `motions`; else null */             \
+    FIELD(const double*, rows_from_own) /* (R, row_poses, 3, 4), of the other picture */  \
+    FIELD(const uint8_t*, at_rest)      /* (R,): 1 where nothing moves */                 \
+    FIELD(int64_t, row_poses)                                                             \
     FIELD(float*, flow)                 /* (H, W, 2); these and the next may be null */   \
     FIELD(float*, scene_flow)           /* (H, W, 3) */                                   \
     FIELD(uint8_t*, valid)                                                                \
@@ -64,6 +69,8 @@ constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
 constexpr int64_t CHUNK = 256;  // pixels whose intermediate results stay in the first-level cache
 constexpr int64_t TILE_ROWS = 16;
 constexpr double ROUNDING_PX = 1e-3;
+constexpr double SAME_ROW = 1e-7;     // rows between two guesses that end the search
+constexpr int32_t MOST_ROUNDS = 64;   // of the search for a row
 
 typedef double d8 __attribute__((vector_size(64)));
 typedef int64_t l8 __attribute__((vector_size(64)));
@@ -359,14 +366,87 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
     look_up(in, places, v, u, count);
 }
 
+// Where a point of other axes is in the row of the other picture that sees it, and in the frame of
+// that row's camera; false if no row does. A row's pose is between those of its neighbours; points
+// beside the picture are where its first or last row has them.
+template <class Project>
+bool find_row(const Motion& in, int64_t group, const double* own, double shift, double begin,
+              const Project& project, double* point, double* place) {
+    const double* poses = in.rows_from_own + 12 * group * in.row_poses;
+    const double last = static_cast<double>(in.row_poses - 1);
+    double row = begin;
+    for (int32_t k = 0; k < MOST_ROUNDS; k++) {
+        const double within = row < 0.0 ? 0.0 : row < last ? row : last;
+        const int64_t upper = static_cast<int64_t>(within);
+        const int64_t lower = upper + 1 < in.row_poses ? upper + 1 : upper;
+        const double share = within - static_cast<double>(upper);
+        double above[3], below[3];
+        transformed(poses + 12 * upper, own, shift, above);
+        transformed(poses + 12 * lower, own, shift, below);
+        for (int axis = 0; axis < 3; axis++) {
+            point[axis] = above[axis] + share * (below[axis] - above[axis]);
+        }
+        if (!project(point, place)) return false;
+        const double found = sailenv::pixel_v(*in.to_lens, place[1]);
+        const double step = found - row;
+        row = found;
+        if (step < SAME_ROW && step > -SAME_ROW) return true;
+    }
+    return false;
+}
+
+// The same as `move_bent_chunk` where rows have poses of their own.
+template <class Project>
+void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int64_t count,
+                        const Project& project) {
+    const int64_t at = v * in.width + u;
+    const sailenv::Lens& to = *in.to_lens;
+    const double rate = 1.0 / in.duration;
+    Places places;
+    for (int64_t k = 0; k < count; k++) {
+        const uint16_t asked = in.row_of_instance[in.instance[at + k]];
+        const int64_t group = asked < in.rows ? asked : 0;
+        const double z = in.depth[at + k];
+        const double reach = z == INFINITE ? 1.0 : z, shift = z == INFINITE ? 0.0 : 1.0;
+        double seen[3], own[3], point[3] = {0.0, 0.0, 1.0}, place[2] = {0.0, 0.0};
+        ray_of(*in.from_lens, in.from_rays, at + k, u + k, v, seen);
+        const bool known = group != 0 && reach == reach && seen[2] == seen[2];
+        for (int axis = 0; axis < 3; axis++) point[axis] = seen[axis] *= reach;
+        const bool rests = in.at_rest[group] != 0;
+        transformed(in.own_from_rows + 12 * (group * in.height + v), seen, shift, own);
+        const bool valid = known && (rests || find_row(in, group, own, shift,
+                                                       static_cast<double>(v), project, point,
+                                                       place));
+        const bool moved = valid && !rests;
+        places.known[k] = known;
+        places.valid[k] = valid;
+        places.u[k] = moved ? sailenv::pixel_u(to, place[0]) - static_cast<double>(u + k) : 0.0;
+        places.v[k] = moved ? sailenv::pixel_v(to, place[1]) - static_cast<double>(v) : 0.0;
+        const double along = in.to_model < 0 ? point[2]
+                                             : std::sqrt(point[0] * point[0] + point[1] * point[1] +
+                                                         point[2] * point[2]);
+        places.z_to[k] = shift == 0.0 ? INFINITE : along;
+        if (in.valid != nullptr) in.valid[at + k] = valid;
+        if (!wanted.flow) continue;
+        float* flow = in.flow + 2 * (at + k);
+        flow[0] = valid ? static_cast<float>(rate * places.u[k]) : NOT_A_NUMBER;
+        flow[1] = valid ? static_cast<float>(rate * places.v[k]) : NOT_A_NUMBER;
+    }
+    if (wanted.place) look_up(in, places, v, u, count);
+}
+
 int32_t move_through_bent_lenses(int64_t threads, const Motion& in, Wanted wanted) {
     const auto move = [&](const auto& project) {
         sailenv::parallel_for(
             threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
                 for (int64_t v = begin; v < end; v++) {
                     for (int64_t u = 0; u < in.width; u += CHUNK) {
-                        move_bent_chunk(in, wanted, v, u,
-                                        u + CHUNK < in.width ? CHUNK : in.width - u, project);
+                        const int64_t count = u + CHUNK < in.width ? CHUNK : in.width - u;
+                        if (in.own_from_rows != nullptr) {
+                            move_rolling_chunk(in, wanted, v, u, count, project);
+                        } else {
+                            move_bent_chunk(in, wanted, v, u, count, project);
+                        }
                     }
                 }
             });
@@ -398,7 +478,13 @@ SAILENV_KERNEL(motion)(int64_t threads, const Motion* given) {
     if (in.to_depth == nullptr) in.to_height = in.to_width = 0;
     const bool looks = in.occluded != nullptr || in.out_of_view != nullptr || in.hidden != nullptr;
     const Wanted wanted{in.flow != nullptr, in.scene_flow != nullptr, looks};
-    if (in.bent != 0) return move_through_bent_lenses(threads, in, wanted);
+    if (in.own_from_rows != nullptr &&
+        (in.rows_from_own == nullptr || in.at_rest == nullptr || in.row_poses < 1 || wanted.scene)) {
+        return sailenv::STATUS_INVALID_ARGUMENT;
+    }
+    if (in.bent != 0 || in.own_from_rows != nullptr) {
+        return move_through_bent_lenses(threads, in, wanted);
+    }
     const auto columns = sailenv::allocate<double>(in.width + 8);
     if (!columns) return sailenv::STATUS_OUT_OF_MEMORY;
     for (int64_t u = 0; u < in.width + 8; u++) {

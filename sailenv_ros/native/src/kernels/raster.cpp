@@ -368,9 +368,9 @@ RowRange bands_of(const Triangle& t, bool fine, int32_t bands, int32_t band_rows
     return {std::max(t.y0 - 1, 0) / rows, std::min(t.y1 / rows, bands - 1)};
 }
 
-// Lists, for each band, the triangles that reach into it.
+// Lists, for each band, the triangles that reach into it; none reaches beyond bands `low` to `high`.
 void sort_into_bands(Segment& segment, const Triangle* triangles, bool fine, int32_t bands,
-                     int32_t band_rows) {
+                     int32_t band_rows, int32_t low, int32_t high) {
     segment.starts.assign(static_cast<size_t>(bands) + 1, 0);
     uint32_t* starts = segment.starts.data();
     for (int64_t k = 0; k < segment.triangle_count; k++) {
@@ -378,8 +378,8 @@ void sort_into_bands(Segment& segment, const Triangle* triangles, bool fine, int
             bands_of(triangles[segment.first_triangle + k], fine, bands, band_rows);
         for (int32_t b = reached.first; b <= reached.last; b++) starts[b + 1]++;
     }
-    for (int32_t b = 0; b < bands; b++) starts[b + 1] += starts[b];
-    segment.entries.resize(starts[bands]);
+    for (int32_t b = low; b <= high; b++) starts[b + 1] += starts[b];
+    segment.entries.resize(starts[high + 1]);
     for (int64_t k = 0; k < segment.triangle_count; k++) {
         const int64_t number = segment.first_triangle + k;
         const auto reached = bands_of(triangles[number], fine, bands, band_rows);
@@ -388,8 +388,8 @@ void sort_into_bands(Segment& segment, const Triangle* triangles, bool fine, int
         }
     }
     // Each start has moved to the next one's place.
-    for (int32_t b = bands; b > 0; b--) starts[b] = starts[b - 1];
-    starts[0] = 0;
+    for (int32_t b = high + 1; b > low; b--) starts[b] = starts[b - 1];
+    starts[low] = 0;
 }
 
 // Where a row of a wide triangle begins and ends, give or take a sample.
@@ -500,7 +500,10 @@ void set_frames(Scratch& scratch, const Instances& instances, const double* eye_
         const double* onto = face == nullptr ? eye_from_world : face_from_world;
         FaceBounds bounds{}, clipped_bounds{};
         if (face != nullptr) {
+            const int32_t end = projection.fine ? 2 * projection.height : projection.height - 1;
+            const bool whole = projection.y0 <= 0 && projection.y1 >= end;
             bounds = {{face->low[0], face->low[1]}, {face->high[0], face->high[1]}};
+            if (!whole) bounds = bounds_within(projection, number);
             if (instances.clipped != 0) {
                 clipped_bounds = bounds_within(clipped(projection, instances), number);
             }
@@ -621,6 +624,10 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
                  });
     const int32_t band_rows = scratch.band_rows;
     const int32_t bands = (projection.height + band_rows - 1) / band_rows;
+    Triangle drawn{};
+    drawn.y0 = static_cast<int16_t>(projection.y0);
+    drawn.y1 = static_cast<int16_t>(projection.y1);
+    const RowRange reached = bands_of(drawn, projection.fine, bands, band_rows);
     parallel_for(threads, set.segment_count, 1, [&](int64_t first, int64_t, int64_t) {
         Segment& segment = set.segments[static_cast<size_t>(first)];
         ClusterRows rows;
@@ -639,7 +646,8 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
             if (projection.fine) std::fill_n(set.part_of.begin() + number, made, seen.part);
             segment.triangle_count += made;
         }
-        sort_into_bands(segment, set.triangles.data(), projection.fine, bands, band_rows);
+        sort_into_bands(segment, set.triangles.data(), projection.fine, bands, band_rows,
+                        std::max(reached.first, 0), std::min(reached.last, bands - 1));
     });
 }
 

@@ -1,20 +1,14 @@
 // The border to Python of everything that draws: pictures and shadow maps.
+#include "render.h"
+
 #include <algorithm>
 #include <cmath>
 #include <new>
 
 #include "../abi.h"
 #include "../threads.h"
-#include "edges.h"
-#include "shade.h"
 
 namespace sailenv {
-
-// What a drawing keeps from picture to picture.
-struct DrawingScratch : Scratch {
-    std::vector<EdgeScratch> edges;  // of each thread
-};
-
 namespace {
 
 // Rows of a band: enough bands that threads finish together, few enough that triangles are not in
@@ -109,10 +103,22 @@ void set_face_turns(Shading& shading, const View& view) {
     shading.lens = FastLens(Lens{1.0, 1.0, 0.0, 0.0, view.lens.near_m, view.lens.far_m});
 }
 
-void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
-                  const Instances& instances, const DrawList& parts, const DrawList& glass,
-                  const Light* light, const Outputs& outputs) {
-    const Projection projection = projection_of(view);
+}  // namespace
+
+bool is_drawable(const View& view, const Light* light, const Outputs& outputs) {
+    const bool sized =
+        view.width > 0 && view.height > 0 && view.width <= 16384 && view.height <= 16384;
+    const bool lacks_samples = view.table != nullptr && view.fine_table == nullptr &&
+                               view.smooth_edges != 0 && outputs.radiance != nullptr;
+    return sized && !lacks_samples && (outputs.radiance == nullptr || light != nullptr);
+}
+
+void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
+               const Instances& instances, const DrawList& parts, const DrawList& glass,
+               const Light* light, const Outputs& outputs, const DrawnRows& rows) {
+    Projection projection = projection_of(view);
+    projection.y0 = rows.first;
+    projection.y1 = rows.end - 1;
     const bool shaded = outputs.radiance != nullptr;
     const bool smoothed = shaded && view.smooth_edges != 0;
     Projection sampled = projection;
@@ -120,10 +126,11 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
         sampled.fine = true;
         sampled.table = view.fine_table;
         sampled.x1 = 2 * projection.width;
-        sampled.y1 = 2 * projection.height;
+        sampled.y0 = 2 * rows.first;
+        sampled.y1 = 2 * rows.end;
     }
     reserve_pixels(scratch, view.width, view.height);
-    scratch.band_rows = band_rows_of(view.height);
+    scratch.band_rows = rows.band;
     if (smoothed) reserve_samples(scratch.edges, threads, view.width, scratch.band_rows);
     set_frames(scratch, instances, view.camera_from_world, sampled);
     make_triangles(threads, scratch, parts, instances, sampled, nullptr, parts.count, false,
@@ -154,7 +161,9 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
     shading.eye =
         vec3(static_cast<float>(m[3]), static_cast<float>(m[7]), static_cast<float>(m[11]));
     const int32_t band_rows = scratch.band_rows;
-    parallel_for(threads, view.height, band_rows, [&](int64_t first, int64_t last, int64_t slot) {
+    const int64_t count = rows.end - rows.first;
+    parallel_for(threads, count, band_rows, [&](int64_t begin, int64_t end, int64_t slot) {
+        const int64_t first = rows.first + begin, last = rows.first + end;
         const int32_t band = static_cast<int32_t>(first / band_rows);
         const int32_t first_row = static_cast<int32_t>(first);
         const int32_t end_row = static_cast<int32_t>(last);
@@ -179,7 +188,6 @@ void draw_picture(int64_t threads, DrawingScratch& scratch, const View& view,
     });
 }
 
-}  // namespace
 }  // namespace sailenv
 
 // Makes the memory that pictures are drawn in, and frees it. One drawing at a time may use it.
@@ -200,15 +208,11 @@ SAILENV_KERNEL(draw_picture)
  const sailenv::Instances* instances, const sailenv::DrawList* parts,
  const sailenv::DrawList* glass, const sailenv::Light* light, const sailenv::Outputs* outputs) {
     using namespace sailenv;
-    const bool sized =
-        view->width > 0 && view->height > 0 && view->width <= 16384 && view->height <= 16384;
-    const bool lacks_samples = view->table != nullptr && view->fine_table == nullptr &&
-                               view->smooth_edges != 0 && outputs->radiance != nullptr;
-    if (!sized || lacks_samples || (outputs->radiance != nullptr && light == nullptr)) {
-        return STATUS_INVALID_ARGUMENT;
-    }
+    if (!is_drawable(*view, light, *outputs)) return STATUS_INVALID_ARGUMENT;
     try {
-        draw_picture(threads, **scratch, *view, *instances, *parts, *glass, light, *outputs);
+        const int32_t height = static_cast<int32_t>(view->height);
+        draw_rows(threads, **scratch, *view, *instances, *parts, *glass, light, *outputs,
+                  {0, height, band_rows_of(view->height)});
     } catch (const std::bad_alloc&) {
         return STATUS_OUT_OF_MEMORY;
     }
