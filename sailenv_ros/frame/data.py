@@ -18,6 +18,7 @@ from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.rebuilding import RebuiltByFields
+from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.scene_info import SceneInfo, SceneObject
 from sailenv_ros.types.views import VIEWS, view_spec
 
@@ -73,6 +74,9 @@ class FrameData(RebuiltByFields, Mapping[str, NDArray[Any]]):
         Which lesson it is of; None if the scene has none.
     draw_amodal : callable or None
         Draws each object of the frame alone, as `amodal` gives it; None if nothing can.
+    row_poses : RowPoses or None
+        Poses by rows where a shutter rolled and something moved; None if all rows saw one instant,
+        or they are not known (messages do not have them).
     """
 
     agent: str
@@ -91,6 +95,7 @@ class FrameData(RebuiltByFields, Mapping[str, NDArray[Any]]):
     randomised: Mapping[str, Any] | None = None
     lesson: LessonState | None = None
     draw_amodal: DrawAmodal | None = None
+    row_poses: RowPoses | None = None
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width

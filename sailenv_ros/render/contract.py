@@ -5,7 +5,7 @@ Imports no graphics library, so that every renderer and the simulation can share
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol, TypeAlias, get_args
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 
 __all__ = [
@@ -83,6 +84,9 @@ class RenderBackend(Protocol):
         previous: Observation | None,
         camera: Camera,
         views: Iterable[str],
+        *,
+        rows: RowPoses | None = None,
+        samples: Sequence[Observation] = (),
     ) -> RenderedViews:
         """Make the wanted views of one camera.
 
@@ -95,6 +99,10 @@ class RenderBackend(Protocol):
         camera : Camera
         views : iterable of str
             Names in `frame.VIEWS`.
+        rows : RowPoses or None
+            Poses of each row where the shutter rolls; snapshot and camera are those of the middle.
+        samples : sequence of Observation
+            Whose light is averaged in the picture; none: that of the snapshot.
 
         Raises
         ------

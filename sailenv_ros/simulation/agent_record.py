@@ -41,6 +41,8 @@ class AgentRecord:
     due_count : int
         Number of its next streamed frame since the epoch began; see `due_step`.
     streams : list of FrameStream
+    notes : list of Observation
+        What `shutter.advance` notes of the last physics steps, while its shutter takes time.
     """
 
     registered: AgentSpec
@@ -52,6 +54,7 @@ class AgentRecord:
     earlier: Observation | None = None
     due_count: int = 0
     streams: list[FrameStream] = field(default_factory=list)
+    notes: list[Observation] = field(default_factory=list)
 
     @property
     def look_at(self) -> LookAt | None:
@@ -72,6 +75,7 @@ class AgentRecord:
     def forget(self) -> None:
         """Cut its past off: the next frame has no flow."""
         self.latest = self.earlier = None
+        self.notes.clear()
 
     @property
     def wanted_views(self) -> frozenset[str]:

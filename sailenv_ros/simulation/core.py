@@ -30,6 +30,7 @@ from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.script.orchestrator import Orchestrator
 from sailenv_ros.simulation.script.randomiser import RandomisationRequest, Randomiser
 from sailenv_ros.simulation.script.scenario import NOTHING_MORE, SceneOverlay, wanted_scenario
+from sailenv_ros.simulation.shutter import advance
 from sailenv_ros.simulation.space_queries import SpaceQueries
 from sailenv_ros.simulation.stream_schedule import StreamSchedule
 from sailenv_ros.simulation.view_planes import view_planes
@@ -265,7 +266,7 @@ class SimulationCore:
             changes = self.orchestrator.next_step
             stops = () if changes is None else (max(changes, world.step_count + 1),)
             goal = min([step, world.step_count + SLICE_STEPS, *ahead.values(), *stops])
-            world.step(goal - world.step_count)
+            advance(self.agents, world, goal - world.step_count)
             paused = self.clock.paused
             self.orchestrator.act()
             self.on_step(world.sim_time_ns)

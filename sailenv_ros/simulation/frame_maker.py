@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
@@ -17,11 +18,12 @@ from sailenv_ros.light.relight.relighter import Relighter
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.simulation.agent_record import AgentRecord
 from sailenv_ros.simulation.live_scene import LiveScene
+from sailenv_ros.simulation.shutter import exposed
 from sailenv_ros.system.memory import give_back_freed_memory
 from sailenv_ros.types.camera import MIN_SIZE_PX, Camera, CameraIntrinsics
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.scene_info import SceneInfo
-from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.snapshot import WorldSnapshot
 
 if TYPE_CHECKING:
     from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
@@ -108,10 +110,14 @@ class FrameMaker:
             lockstep=self._lockstep,
             changed_ns=world.changed_ns,
         )
-        camera = self._scene.agents.camera(record, world)
+        exposure = exposed(record, snapshot, self._scene.agents.camera(record, world), world)
+        observed = exposure.observed
+        snapshot, camera, rows = observed.snapshot, observed.camera, observed.rows
         past = record.past(snapshot.sim_time_ns)
-        rendered = self._renderer.render(snapshot, past, camera, views)
-        record.remember(Observation(snapshot=snapshot, camera=camera, depth=rendered.depth))
+        rendered = self._renderer.render(
+            snapshot, past, camera, views, rows=rows, samples=exposure.samples
+        )
+        record.remember(replace(observed, depth=rendered.depth))
         record.sequence += 1
         return Frame(
             agent=record.spec.name,
@@ -126,7 +132,8 @@ class FrameMaker:
             views=rendered.views,
             timings_s={**rendered.timings_s, "render": time.perf_counter() - began_s},
             info=info,
-            states=world.states(),
+            states=exposure.states,
+            row_poses=rows,
             randomised=randomised,
             lesson=lesson,
             draw_amodal=lambda only=0: self.run_later(

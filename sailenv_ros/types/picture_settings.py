@@ -6,6 +6,7 @@ concerns the picture and the measured depth alone: no ground truth depends on it
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, get_args
@@ -139,6 +140,14 @@ class PictureSettings:
     def rolls(self) -> bool:
         """Whether rows are exposed one after the other."""
         return self.row_time_us > 0.0
+
+    def span_ns(self, height: int) -> float:
+        """Return the time from the first row's exposure to the end of the last one's [ns]."""
+        return (height - 1) * self.row_time_us * 1e3 + self.exposure_time_ms * 1e6
+
+    def delay_ns(self, height: int) -> int:
+        """Return the time from a frame's instant to when it is complete [ns], rounded up."""
+        return math.ceil(0.5 * self.span_ns(height))
 
     @staticmethod
     def checked(what: str, settings: object) -> PictureSettings:

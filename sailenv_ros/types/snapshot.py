@@ -21,6 +21,7 @@ from sailenv_ros.types.labels import CategoryTable, Instance
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.outside import Outside
+from sailenv_ros.types.row_poses import RowPoses
 
 __all__ = ["DrawnInstance", "Observation", "SceneContents", "WorldSnapshot"]
 
@@ -161,8 +162,12 @@ class Observation:
     depth : (H, W) float32 or None
         The depth view of then, or ``range`` through a lens other than a pin-hole; needed for the
         occlusion view alone.
+    rows : RowPoses or None
+        Where a shutter rolls and something moves, the poses of each row; snapshot and camera are
+        those of the instant in the middle.
     """
 
     snapshot: WorldSnapshot
     camera: Camera
     depth: NDArray[np.float32] | None = None
+    rows: RowPoses | None = None

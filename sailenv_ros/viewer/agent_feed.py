@@ -213,7 +213,10 @@ class _AgentFeed:
                     continue  # slow, or nothing moves
                 frame = self._simulation.capture(wanted, agent=self._agent)
             # Where time stands, a frame that waited in the stream may be of an earlier instant.
-            if frame.stamp_ns >= self._simulation.sim_time_ns or not self._stands():
+            age_ns = self._simulation.sim_time_ns - frame.stamp_ns
+            if age_ns <= frame.camera.picture.delay_ns(frame.camera.intrinsics.height) or (
+                not self._stands()
+            ):
                 for watcher, state in states.items():
                     watcher.seen = state
             self._deliver(frame, takers)

@@ -20,7 +20,7 @@ from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.native.ray_types import RAY_SCENE
 from sailenv_ros.native.relight_kernels import direct_light_delta
 from sailenv_ros.native.render_types import address, record
-from sailenv_ros.render.picture.post_pass import PostPass
+from sailenv_ros.render.picture.post_pass import Light as SensorLight, PostPass
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light, LightType
 from tests.render.conftest import Render
@@ -107,13 +107,13 @@ FROM_AFAR = pytest.mark.parametrize("distance_m", DISTANCES_M)
 def seen_of(render: Render, monkeypatch: pytest.MonkeyPatch) -> Callable[..., NDArray[np.float64]]:
     """Radiance in the middle of the picture of a matt white wall, before tone curve and sRGB."""
     lit: list[NDArray[np.float16]] = []
-    finish = PostPass.finished
+    gather = PostPass.gathered
 
-    def noting(post: PostPass, radiance: NDArray[np.float16], *others: Any) -> NDArray[np.uint8]:
+    def noting(post: PostPass, radiance: NDArray[np.float16], *others: Any) -> SensorLight:
         lit.append(radiance.copy())
-        return finish(post, radiance, *others)
+        return gather(post, radiance, *others)
 
-    monkeypatch.setattr(PostPass, "finished", noting)
+    monkeypatch.setattr(PostPass, "gathered", noting)
     wall = model_of(wall_mesh(60.0, 60.0), base_colour=(1, 1, 1, 1), roughness=1.0)
 
     def look(*lights: Light) -> NDArray[np.float64]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from sailenv_ros.render.contract import RenderedViews
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, checked_views
 
@@ -29,6 +30,9 @@ class BlankRenderer:
         previous: Observation | None,
         camera: Camera,
         views: Iterable[str],
+        *,
+        rows: RowPoses | None = None,
+        samples: Sequence[Observation] = (),
     ) -> RenderedViews:
         wanted = checked_views(views)
         self.calls.append((snapshot, previous, camera, wanted))

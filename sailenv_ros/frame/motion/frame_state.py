@@ -119,6 +119,9 @@ def frame_state_of(frame: AnyFrame, what: str = "frame") -> FrameState:
         fields |= {name: frame.get(key) for name, key in views.items()}
     else:
         raise InvalidRequest(what, type(frame).__name__, "a FrameData, or a frame of an Agent")
+    if fields["camera"].picture.rolls:
+        accepted = "a frame of a global shutter (row_time_us 0); the view flow knows rolling ones"
+        raise InvalidRequest(what, "of a rolling shutter", accepted)
     if fields["states"] is None:
         accepted = "a frame with the states of its instances, which version 0.2.0 did not record"
         raise InvalidRequest(what, "without states", accepted)

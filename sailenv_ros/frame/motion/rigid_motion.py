@@ -20,11 +20,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.lens_rays import unit_rays
-from sailenv_ros.native.motion_kernels import transform_points
-from sailenv_ros.types.camera import Camera
+from sailenv_ros.native.motion_kernels import RowMotions, transform_points
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import invert
+from sailenv_ros.types.row_poses import RowPoses
 
-__all__ = ["OCCLUSION_TOLERANCE", "ObservedPoses", "MotionTable", "motion_table", "object_points"]
+__all__ = [
+    "OCCLUSION_TOLERANCE",
+    "MotionTable",
+    "ObservedPoses",
+    "camera_points",
+    "motion_table",
+    "object_points",
+    "rows_moved",
+]
 
 OCCLUSION_TOLERANCE = 0.01
 """Share of its depth by which a point must lie behind all four nearest pixels of the other picture
@@ -48,12 +57,15 @@ class ObservedPoses:
         Rigid.
     histories : (N,) int64
         Numbers that change when an instance's past is cut off.
+    rows : RowPoses or None
+        Of a rolling shutter; the rest is of the instant in its middle.
     """
 
     camera: Camera
     ids: NDArray[np.uint16]
     world_from_instance: NDArray[np.float64]
     histories: NDArray[np.int64]
+    rows: RowPoses | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -66,10 +78,13 @@ class MotionTable:
         Row of each instance id; 0 for what has no motion. Id 0 is the background's.
     motions : (R, 3, 4) float64
         D of the docstring above.
+    by_rows : RowMotions or None
+        What counts instead where a shutter rolls.
     """
 
     row_of_instance: NDArray[np.uint16]
     motions: NDArray[np.float64]
+    by_rows: RowMotions | None = None
     _camera: Camera
     _first: NDArray[np.float64]
     _last: NDArray[np.float64]
@@ -140,6 +155,8 @@ def object_points(
     points : (H, W, 3) float32
         [m]; nan where nothing was hit, or its depth is not known.
     """
+    if poses.rows is not None:
+        return _object_points_by_rows(depth, instance, poses)
     count = len(poses.ids)
     rows = np.zeros(65536, np.uint16)
     rows[poses.ids] = np.arange(1, count + 1)
@@ -152,3 +169,42 @@ def object_points(
     return transform_points(
         depth, instance, rows, transforms, lens.lens_record, rays=rays, threads=threads
     )
+
+
+def _object_points_by_rows(
+    depth: NDArray[np.float32], instance: NDArray[np.uint16], poses: ObservedPoses
+) -> NDArray[np.float32]:
+    """Return the same where each row has poses of its own."""
+    assert poses.rows is not None
+    points = camera_points(depth, poses.camera.intrinsics)
+    points = rows_moved(poses.rows.world_from_camera, points)
+    found = np.full(points.shape, np.nan, np.float32)
+    seen = np.isfinite(depth)
+    for id_, world_from_instance in zip(poses.ids, poses.world_from_instance, strict=True):
+        v, u = np.nonzero(seen & (instance == id_))
+        if len(v):
+            to_own = invert(poses.rows.of_instance(int(id_), world_from_instance)[v])
+            own = np.einsum("nij,nj->ni", to_own[:, :3, :3], points[v, u]) + to_own[:, :3, 3]
+            found[v, u] = own
+    return found
+
+
+def camera_points(
+    reach: NDArray[np.float32], lens: CameraIntrinsics
+) -> NDArray[np.float64]:
+    """Return (H, W, 3) float64: points of the optical frame, from depths, or ranges, of pixels."""
+    rays = lens.rays() if lens.is_pinhole else unit_rays(lens)
+    with np.errstate(invalid="ignore"):
+        points: NDArray[np.float64] = rays * reach[..., None].astype(np.float64)
+    return points
+
+
+def rows_moved(
+    poses: NDArray[np.float64], points: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return (H, W, 3) points, those of each row moved by a pose (H, 4, 4) of its own."""
+    with np.errstate(invalid="ignore"):
+        moved: NDArray[np.float64] = (
+            np.einsum("hij,hwj->hwi", poses[:, :3, :3], points) + poses[:, None, :3, 3]
+        )
+    return moved

@@ -87,8 +87,13 @@ def points_of(frame: FrameData, *, in_world: bool = True) -> PointCloud:
     pose = frame.camera.world_from_camera if in_world else np.eye(4)
     count = len(pixels)
     xyz = np.empty((count, 3), np.float32)
-    for axis, (a, b, c, shift) in enumerate(pose[:3].tolist()):
-        xyz[:, axis] = a * x + b * y + c * z + shift
+    if in_world and frame.row_poses is not None:
+        own = frame.row_poses.world_from_camera[rows]
+        points = np.stack([x, y, z], axis=-1)
+        xyz[:] = np.einsum("nij,nj->ni", own[:, :3, :3], points) + own[:, :3, 3]
+    else:
+        for axis, (a, b, c, shift) in enumerate(pose[:3].tolist()):
+            xyz[:, axis] = a * x + b * y + c * z + shift
     rgb = frame.views.get("rgb")
     category, instance = frame.views.get("category"), frame.views.get("instance")
 

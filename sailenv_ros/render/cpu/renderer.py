@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.drawing import Drawing
+from sailenv_ros.native.drawing import Drawing, DrawnPoses
 from sailenv_ros.native.library import native_library
 from sailenv_ros.native.render_types import PART, VIEW, record
 from sailenv_ros.render.cpu.cube_faces import lens_tables
@@ -25,6 +25,7 @@ from sailenv_ros.render.scene.opening_window import OpeningWindows
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import Share
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
 
@@ -108,7 +109,10 @@ class NativeRenderer(DrawingRenderer):
             marked = time.perf_counter()
         poses = np.ascontiguousarray(snapshot.world_from_body)
         at_baked_pose = table.at_baked_pose(snapshot)
-        instances = table.instances(poses, at_baked_pose, clip=self._openings.of(snapshot, camera))
+        rows = None if observed.rows is None else _drawn_poses(observed.rows, snapshot)
+        # What is seen through openings differs from row to row.
+        clip = None if rows is not None else self._openings.of(snapshot, camera)
+        instances = table.instances(poses, at_baked_pose, clip=clip)
         # With supersampling the picture is drawn apart: ground truth is of pixel centres.
         sampled = light is not None and camera.picture.supersampling > 1
         height, width = camera.intrinsics.height, camera.intrinsics.width
@@ -128,12 +132,12 @@ class NativeRenderer(DrawingRenderer):
             surface=arrays["surface"],
             radiance=radiance,
             attributes=[arrays.get(view) for view in _ATTRIBUTES],
+            poses=rows,
         )
         if sampled:
             fine = camera.of_samples()
-            instances = table.instances(
-                poses, at_baked_pose, clip=self._openings.of(snapshot, fine)
-            )
+            clip = None if rows is not None else self._openings.of(snapshot, fine)
+            instances = table.instances(poses, at_baked_pose, clip=clip)
             height, width = fine.intrinsics.height, fine.intrinsics.width
             arrays["rgb"] = np.empty((height, width, 4), np.float16)
             if camera.picture.occlusion_strength > 0.0:
@@ -146,6 +150,7 @@ class NativeRenderer(DrawingRenderer):
                 light,
                 surface=arrays.get("samples"),
                 radiance=arrays["rgb"],
+                poses=rows,
             )
         if light is not None:
             self._reflect(snapshot, fine if sampled else camera, light, arrays)
@@ -217,6 +222,15 @@ class NativeRenderer(DrawingRenderer):
             radiance=radiance,
         )
         return radiance[..., :3].astype(np.float32)
+
+
+def _drawn_poses(rows: RowPoses, snapshot: WorldSnapshot) -> DrawnPoses:
+    return DrawnPoses(
+        camera_from_world=np.ascontiguousarray(rows.camera_from_world),
+        world_from_camera=np.ascontiguousarray(rows.world_from_camera),
+        moving=np.flatnonzero(np.isin(snapshot.contents.instance_ids, rows.ids)),
+        world_from_moving=np.ascontiguousarray(rows.world_from_instance),
+    )
 
 
 def native_view(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -34,6 +34,7 @@ from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
 from sailenv_ros.render.scene.flat_mirrors import SeenMirror, Window
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
 
@@ -102,13 +103,22 @@ class Renderer(DrawingRenderer):
         previous: Observation | None,
         camera: Camera,
         views: Iterable[str],
+        *,
+        rows: RowPoses | None = None,
+        samples: Sequence[Observation] = (),
     ) -> RenderedViews:
-        """Make the wanted views; through lenses that bend straight lines by the native renderer."""
-        if camera.intrinsics.is_pinhole or self._closed:
-            return super().render(snapshot, previous, camera, views)
+        """Make the wanted views.
+
+        Through lenses that bend straight lines and rolling shutters by the native renderer.
+        """
+        is_global = rows is None and (previous is None or previous.rows is None)
+        if (camera.intrinsics.is_pinhole and is_global) or self._closed:
+            return super().render(snapshot, previous, camera, views, samples=samples)
         if self._native is None:
             self._native = NativeRenderer(threads=self._threads)
-        return self._native.render(snapshot, previous, camera, views)
+        return self._native.render(
+            snapshot, previous, camera, views, rows=rows, samples=samples
+        )
 
     def _drawing_context(self) -> moderngl.Context:
         return self._context

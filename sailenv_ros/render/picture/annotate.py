@@ -23,9 +23,11 @@ from sailenv_ros.frame.motion.rigid_motion import (
     motion_table,
     object_points,
 )
+from sailenv_ros.frame.motion.rolling_motion import rolling_table
 from sailenv_ros.native.motion_kernels import move_points
 from sailenv_ros.native.view_kernels import annotate_pixels
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
 
@@ -44,6 +46,8 @@ def annotate(
     camera: Camera,
     views: frozenset[str],
     threads: int = 1,
+    *,
+    rows: RowPoses | None = None,
 ) -> dict[str, NDArray[Any]]:
     """Make the ground-truth views.
 
@@ -58,6 +62,8 @@ def annotate(
         Which to make; others than ground truth made here are left out. ``depth`` always is.
     threads : int
         The views do not depend on it.
+    rows : RowPoses or None
+        As `RenderBackend.render` takes them.
 
     Returns
     -------
@@ -91,7 +97,7 @@ def annotate(
         )
     if "lens_valid" in wanted:
         arrays["lens_valid"][:] = True if lens.is_pinhole else ~np.isnan(depth_shares(lens))
-    now = _poses_of(snapshot, camera)
+    now = _poses_of(Observation(snapshot=snapshot, camera=camera, rows=rows))
     moved = {key: arrays[view] for view, key in _MOTION_OUTPUTS.items() if view in arrays}
     if moved:
         _add_motion(arrays, moved, snapshot, previous, now, threads)
@@ -118,12 +124,14 @@ def with_depth(previous: Observation, surface: NDArray[np.float32]) -> Observati
     return replace(previous, depth=truth[reach])
 
 
-def _poses_of(snapshot: WorldSnapshot, camera: Camera) -> ObservedPoses:
+def _poses_of(observed: Observation) -> ObservedPoses:
+    snapshot = observed.snapshot
     return ObservedPoses(
-        camera=camera,
+        camera=observed.camera,
         ids=snapshot.contents.instance_ids,
         world_from_instance=snapshot.world_from_body,
         histories=snapshot.histories,
+        rows=observed.rows,
     )
 
 
@@ -146,7 +154,9 @@ def _add_motion(
         for name, array in moved.items():
             array[:] = unknown[name]
         return
-    table = motion_table(now, _poses_of(previous.snapshot, previous.camera))
+    past = _poses_of(previous)
+    rolls = now.rows is not None or past.rows is not None
+    table = rolling_table(now, past) if rolls else motion_table(now, past)
     duration_s = (previous.snapshot.sim_time_ns - snapshot.sim_time_ns) * 1e-9
     depth = previous.depth if "hidden" in moved else None
     move_points(
@@ -162,6 +172,7 @@ def _add_motion(
         OCCLUSION_TOLERANCE,
         moved,
         bent=bent_lenses(lens, previous.camera.intrinsics),
+        by_rows=table.by_rows,
         duration_s=duration_s if duration_s < 0.0 else -1.0,
         threads=threads,
     )

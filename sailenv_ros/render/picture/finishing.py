@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -20,9 +20,10 @@ from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.contract import RenderedViews, require_drawable
 from sailenv_ros.render.picture.annotate import annotate, with_depth
 from sailenv_ros.render.picture.measured_depth import MEASURED_FROM, measured_depth
-from sailenv_ros.render.picture.post_pass import PostPass
+from sailenv_ros.render.picture.post_pass import Light, PostPass
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, checked_views
 
@@ -61,6 +62,9 @@ class DrawingRenderer(ABC):
         previous: Observation | None,
         camera: Camera,
         views: Iterable[str],
+        *,
+        rows: RowPoses | None = None,
+        samples: Sequence[Observation] = (),
     ) -> RenderedViews:
         """Make the wanted views of one camera; see `RenderBackend.render`."""
         if self._closed:
@@ -76,18 +80,22 @@ class DrawingRenderer(ABC):
             if keeps_depth and previous is not None and previous.depth is None:
                 past = self._draw(previous, frozenset({"depth"}), {})["surface"]
                 previous = with_depth(previous, past)
-            arrays = self._draw(Observation(snapshot=snapshot, camera=camera), drawn, timings)
+            now = Observation(snapshot=snapshot, camera=camera, rows=rows)
+            apart = bool(samples) and "rgb" in wanted
+            arrays = self._draw(now, drawn - {"rgb"} if apart else drawn, timings)
+            light = self._mean_light(samples, timings) if apart else None
         began = time.perf_counter()
         surface = arrays.pop("surface")
         if "rgb" in wanted:
-            still, samples = self._at_baked_pose(snapshot), arrays.pop("samples", None)
-            arrays["rgb"] = self._post.finished(
-                arrays["rgb"], surface, snapshot, camera, still, samples
-            )
+            if light is None:
+                light = self._light_of(now, arrays, surface)
+            arrays["rgb"] = self._post.developed(light, snapshot, camera)
             timings["post"] = time.perf_counter() - began
             began = time.perf_counter()
         reach = reach_view(camera.intrinsics)
-        truth = annotate(surface, snapshot, previous, camera, wanted | {reach}, self._threads)
+        truth = annotate(
+            surface, snapshot, previous, camera, wanted | {reach}, self._threads, rows=rows
+        )
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
         depth: NDArray[np.float32] = truth[reach]
@@ -107,6 +115,29 @@ class DrawingRenderer(ABC):
         if not self._closed:
             self._closed = True
             self._release()
+
+    def _light_of(
+        self, observed: Observation, arrays: Arrays, surface: NDArray[np.float32]
+    ) -> Light:
+        """Return the light that reaches the sensor, of what was drawn."""
+        return self._post.gathered(
+            arrays.pop("rgb"),
+            surface,
+            observed.snapshot,
+            observed.camera,
+            self._at_baked_pose(observed.snapshot),
+            arrays.pop("samples", None),
+        )
+
+    def _mean_light(self, samples: Sequence[Observation], timings: Timings) -> Light:
+        """Return the mean light of several instants."""
+        total: NDArray[np.float32] | None = None
+        for sample in samples:
+            arrays = self._draw(sample, frozenset({"rgb"}), timings)
+            light = self._post.at_sensor(self._light_of(sample, arrays, arrays["surface"]))
+            total = light.astype(np.float32) if total is None else total + light
+        assert total is not None
+        return Light((total / len(samples)).astype(np.float16))
 
     def _drawing_context(self) -> contextlib.AbstractContextManager[object]:
         """Return what `_draw` runs in."""

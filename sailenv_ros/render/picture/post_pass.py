@@ -6,6 +6,8 @@ processor, on copies: ground truth never passes through here. What is off costs 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,7 +17,24 @@ from sailenv_ros.render.picture.tone import code_table
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["PostPass"]
+__all__ = ["Light", "PostPass"]
+
+
+class Light(NamedTuple):
+    """Light of a picture's pixels.
+
+    Attributes
+    ----------
+    radiance : (H, W, 4) float16
+        Linear, as the scene's exposure left it, and the share of it that came from around.
+    shade : AmbientShade or None
+        What occlusion takes away of it yet, at `surface`.
+    surface : (H, W, 2) float32 or None
+    """
+
+    radiance: NDArray[np.float16]
+    shade: tone_map.AmbientShade | None = None
+    surface: NDArray[np.float32] | None = None
 
 
 class PostPass:
@@ -30,7 +49,7 @@ class PostPass:
     def __init__(self, threads: int) -> None:
         self._threads = threads
 
-    def finished(
+    def gathered(
         self,
         radiance: NDArray[np.float16],
         surface: NDArray[np.float32],
@@ -38,8 +57,8 @@ class PostPass:
         camera: Camera,
         still: NDArray[np.bool_],
         samples: NDArray[np.float32] | None = None,
-    ) -> NDArray[np.uint8]:
-        """Return the picture of what was lit.
+    ) -> Light:
+        """Return the light of what was lit, by pixels.
 
         Parameters
         ----------
@@ -51,11 +70,6 @@ class PostPass:
             Which instances have baked light where they are.
         samples : float32 array or None
             Like `surface`, of the samples; needed where there are any and occlusion is on.
-
-        Returns
-        -------
-        rgb : (H, W, 3) uint8
-            sRGB; a fresh array.
         """
         settings = camera.picture
         shade: tone_map.AmbientShade | None = None
@@ -76,16 +90,31 @@ class PostPass:
                 radiance, times, shade, samples, threads=self._threads
             )
             shade = None
+        return Light(radiance, shade, surface)
+
+    def at_sensor(self, light: Light) -> NDArray[np.float16]:
+        """Return (H, W, 4) float16: light with what occlusion takes away."""
+        if light.shade is None or light.surface is None:
+            return light.radiance
+        return tone_map.apply_visibility(
+            light.radiance, *light.shade, light.surface, threads=self._threads
+        )
+
+    def developed(
+        self, light: Light, snapshot: WorldSnapshot, camera: Camera
+    ) -> NDArray[np.uint8]:
+        """Return (H, W, 3) uint8: the sRGB picture of light; a fresh array."""
+        settings = camera.picture
         if settings.bloom > 0.0 or settings.full_well > 0.0:
-            if shade is not None:
-                # Light is spread and counted as it arrives at the sensor.
-                radiance = tone_map.apply_visibility(
-                    radiance, *shade, surface, threads=self._threads
-                )
-                shade = None
+            # Light is spread and counted as it arrives at the sensor.
             radiance = sensor_light(
-                radiance, settings, camera.name, snapshot.sim_time_ns, threads=self._threads
+                self.at_sensor(light),
+                settings,
+                camera.name,
+                snapshot.sim_time_ns,
+                threads=self._threads,
             )
+            light = Light(radiance)
         return tone_map.tone_map(
-            radiance, code_table(settings), shade, surface, threads=self._threads
+            light.radiance, code_table(settings), light.shade, light.surface, threads=self._threads
         )

@@ -26,7 +26,7 @@ def tone_map(
     radiance: NDArray[np.float16],
     table: NDArray[np.uint8],
     shade: AmbientShade | None,
-    surface: NDArray[np.float32],
+    surface: NDArray[np.float32] | None,
     *,
     threads: int = 1,
 ) -> NDArray[np.uint8]:
@@ -41,8 +41,8 @@ def tone_map(
         See `tone.code_table`.
     shade : AmbientShade or None
         How much of that share arrives; None if all of it does.
-    surface : (H, W, 2) float32
-        Depth, for telling surfaces apart.
+    surface : (H, W, 2) float32 or None
+        Depth, for telling surfaces apart; needed with `shade`.
     threads : int
         The picture does not depend on it.
 
