@@ -67,41 +67,39 @@ class PictureSpec(SceneModel):
         default=_STANDARD.depth_sensor,
         description="sensor of the view `measured_depth`; ideal: without errors",
     )
-    exposure_time: Annotated[float, _number("exposure_time_ms")] = Field(
-        default=_STANDARD.exposure_time_ms, description="how long each row is exposed [ms]"
+    exposure_time_ms: Annotated[float, _number("exposure_time_ms")] = Field(
+        default=_STANDARD.exposure_time_ms, description="exposure of each row [ms]"
     )
     exposure_samples: Annotated[int, _number("exposure_samples")] = Field(
         default=_STANDARD.exposure_samples,
-        description="instants of the exposure whose light is averaged",
+        description="instants whose light is averaged",
     )
-    row_time: Annotated[float, _number("row_time_us")] = Field(
+    row_time_us: Annotated[float, _number("row_time_us")] = Field(
         default=_STANDARD.row_time_us,
-        description="time from a row to the next one [µs]; above 0: a rolling shutter",
+        description="time from row to row [µs]; 0: global shutter",
     )
     read_out: Annotated[ReadOut, Choice(picture_choices()["read_out"])] = Field(
         default=_STANDARD.read_out,
-        description="down: the first row is exposed first; up: the last one",
+        description="which row is first: down, the top one",
     )
     gain: Annotated[float, _number("gain")] = Field(
-        default=_STANDARD.gain, description="amplification of the electrons [stops]"
+        default=_STANDARD.gain, description="amplification [stops]"
     )
     vignetting: Annotated[float, _number("vignetting")] = Field(
         default=_STANDARD.vignetting,
-        description="how far light falls off as cos⁴ of the angle from the axis",
+        description="share of the cos⁴ fall-off",
     )
     lateral_colour: Annotated[float, _number("lateral_colour")] = Field(
         default=_STANDARD.lateral_colour,
-        description="share by which red is larger and blue smaller than green",
+        description="share by which red is larger, blue smaller",
     )
     jpeg_quality: Annotated[int, _number("jpeg_quality")] = Field(
         default=_STANDARD.jpeg_quality,
-        description="quality of the JPEG file that the picture has been in; 0: none",
+        description="compression; 0: none",
     )
 
     def to_settings(self) -> PictureSettings:
         """Return the data type that the renderer takes."""
         given = self.model_dump()
         given["occlusion_radius_m"] = given.pop("occlusion_radius")
-        given["exposure_time_ms"] = given.pop("exposure_time")
-        given["row_time_us"] = given.pop("row_time")
         return PictureSettings(**given)

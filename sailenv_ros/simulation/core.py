@@ -6,7 +6,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -257,12 +258,10 @@ class SimulationCore:
         """
         world = self.world
 
-        def due() -> Iterator[tuple[str, int]]:
-            yield from self.streams.due_steps(step, every_frame=every_frame).items()
-
+        due = partial(self.streams.due_steps, step, every_frame=every_frame)
         while world.step_count < step and not self._should_end():
-            self.streams.render([name for name, at in due() if 0 <= at <= world.step_count])
-            ahead = {name: at for name, at in due() if at > world.step_count}
+            self.streams.render([name for name, at in due().items() if 0 <= at <= world.step_count])
+            ahead = {name: at for name, at in due().items() if at > world.step_count}
             changes = self.orchestrator.next_step
             stops = () if changes is None else (max(changes, world.step_count + 1),)
             goal = min([step, world.step_count + SLICE_STEPS, *ahead.values(), *stops])

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import InvalidState
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.light.relight.relighter import Relighter
@@ -113,6 +114,7 @@ class FrameMaker:
         exposure = exposed(record, snapshot, self._scene.agents.camera(record, world), world)
         observed = exposure.observed
         snapshot, camera, rows = observed.snapshot, observed.camera, observed.rows
+        drawn_alone = snapshot if rows is None else None
         past = record.past(snapshot.sim_time_ns)
         rendered = self._renderer.render(
             snapshot, past, camera, views, rows=rows, samples=exposure.samples
@@ -137,7 +139,7 @@ class FrameMaker:
             randomised=randomised,
             lesson=lesson,
             draw_amodal=lambda only=0: self.run_later(
-                lambda: self.draw_amodal(snapshot, camera, only)
+                lambda: self.draw_amodal(drawn_alone, camera, only)
             ),
         )
 
@@ -159,14 +161,29 @@ class FrameMaker:
             self.look(Camera(intrinsics=_SMALL), *views)
         give_back_freed_memory()  # what the scene of before had
 
-    def draw_amodal(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
+    def draw_amodal(
+        self, snapshot: WorldSnapshot | None, camera: Camera, only: int = 0
+    ) -> AmodalMasks:
         """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.
+
+        Parameters
+        ----------
+        snapshot : WorldSnapshot or None
+            None where there are several: rows of a rolling shutter.
+        camera : Camera
+        only : int
 
         Raises
         ------
+        InvalidState
+            Without a snapshot.
         NativeLibraryError
             If there is no native library, which draws them.
         """
+        if snapshot is None:
+            raise InvalidState(
+                "objects of a rolling shutter are not drawn alone; with row_time_us 0 they are"
+            )
         if self._amodal is None:
             # The renderers are what takes longest to import.
             from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer

@@ -31,7 +31,7 @@ _STEP_NS = 1_000_000_000 // STEPS_PER_SECOND + 1
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Exposure:
-    """What one frame is made of.
+    """The observations that one frame is made of.
 
     Attributes
     ----------

@@ -47,9 +47,7 @@ class RowPoses(RebuiltByFields):
         """(H, 4, 4) float64: the inverses of `world_from_camera`."""
         return invert(self.world_from_camera)
 
-    def of_instance(
-        self, instance_id: int, otherwise: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def of_instance(self, instance_id: int, otherwise: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return (H, 4, 4) float64: poses of one instance; `otherwise` (4, 4) if it stood still."""
         column = np.flatnonzero(self.ids == instance_id)
         if len(column):

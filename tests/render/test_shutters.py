@@ -224,9 +224,7 @@ def test_pnp_finds_the_pose_of_each_row(native: NativeRenderer) -> None:
         ids=np.zeros(0, np.uint16),
         world_from_instance=np.zeros((240, 0, 4, 4)),
     )
-    now = Observation(
-        snapshot=snapshot_of(things), camera=camera_through(lens, 0.05), rows=still
-    )
+    now = Observation(snapshot=snapshot_of(things), camera=camera_through(lens, 0.05), rows=still)
     views = seen(native, now, "object_coords", "instance")
     middle = np.linalg.inv(cameras[119])
     apart = np.linalg.norm(cameras[0, :3, 3] - cameras[239, :3, 3])

@@ -189,9 +189,7 @@ def _object_points_by_rows(
     return found
 
 
-def camera_points(
-    reach: NDArray[np.float32], lens: CameraIntrinsics
-) -> NDArray[np.float64]:
+def camera_points(reach: NDArray[np.float32], lens: CameraIntrinsics) -> NDArray[np.float64]:
     """Return (H, W, 3) float64: points of the optical frame, from depths, or ranges, of pixels."""
     rays = lens.rays() if lens.is_pinhole else unit_rays(lens)
     with np.errstate(invalid="ignore"):
@@ -199,9 +197,7 @@ def camera_points(
     return points
 
 
-def rows_moved(
-    poses: NDArray[np.float64], points: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def rows_moved(poses: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return (H, W, 3) points, those of each row moved by a pose (H, 4, 4) of its own."""
     with np.errstate(invalid="ignore"):
         moved: NDArray[np.float64] = (

@@ -116,9 +116,7 @@ class Renderer(DrawingRenderer):
             return super().render(snapshot, previous, camera, views, samples=samples)
         if self._native is None:
             self._native = NativeRenderer(threads=self._threads)
-        return self._native.render(
-            snapshot, previous, camera, views, rows=rows, samples=samples
-        )
+        return self._native.render(snapshot, previous, camera, views, rows=rows, samples=samples)
 
     def _drawing_context(self) -> moderngl.Context:
         return self._context

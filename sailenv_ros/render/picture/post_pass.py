@@ -1,4 +1,4 @@
-"""From a lit picture to what an agent sees: occlusion, bloom, noise, tone curve.
+"""From a lit picture to what an agent sees: occlusion, glass, bloom, noise, tone curve, JPEG.
 
 Radiance and surfaces come in, an 8-bit sRGB picture goes out. Everything happens on the
 processor, on copies: ground truth never passes through here. What is off costs nothing.
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.render.picture import ambient_occlusion, supersampling, tone_map
+from sailenv_ros.render.picture.optics import through_glass
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.render.picture.tone import code_table
 from sailenv_ros.types.camera import Camera
@@ -100,11 +101,11 @@ class PostPass:
             light.radiance, *light.shade, light.surface, threads=self._threads
         )
 
-    def developed(
-        self, light: Light, snapshot: WorldSnapshot, camera: Camera
-    ) -> NDArray[np.uint8]:
+    def developed(self, light: Light, snapshot: WorldSnapshot, camera: Camera) -> NDArray[np.uint8]:
         """Return (H, W, 3) uint8: the sRGB picture of light; a fresh array."""
         settings = camera.picture
+        if settings.lateral_colour or settings.vignetting:
+            light = Light(through_glass(self.at_sensor(light), camera.intrinsics, settings))
         if settings.bloom > 0.0 or settings.full_well > 0.0:
             # Light is spread and counted as it arrives at the sensor.
             radiance = sensor_light(
@@ -115,6 +116,14 @@ class PostPass:
                 threads=self._threads,
             )
             light = Light(radiance)
-        return tone_map.tone_map(
+        rgb = tone_map.tone_map(
             light.radiance, code_table(settings), light.shade, light.surface, threads=self._threads
         )
+        return _from_jpeg(rgb, settings.jpeg_quality) if settings.jpeg_quality else rgb
+
+
+def _from_jpeg(rgb: NDArray[np.uint8], quality: int) -> NDArray[np.uint8]:
+    """Return (H, W, 3) uint8: a picture as a JPEG file of that quality keeps it."""
+    from sailenv_ros.frame.pictures.codecs import decode_picture, encode_jpeg  # need OpenCV
+
+    return decode_picture(encode_jpeg(rgb, quality))

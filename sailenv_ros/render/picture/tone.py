@@ -50,7 +50,8 @@ def code_table(settings: PictureSettings) -> NDArray[np.uint8]:
 
     The index is the number's bits; what is negative or no number is black.
     """
-    return _code_table(settings.tone_curve, settings.exposure)
+    # Gain amplifies what was collected, exposure what arrives: to the curve they are one.
+    return _code_table(settings.tone_curve, settings.exposure + settings.gain)
 
 
 @lru_cache(maxsize=32)

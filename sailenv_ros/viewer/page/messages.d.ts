@@ -434,7 +434,7 @@ export interface MaterialChanges {
   mapping?: "box" | "own" | null;
 }
 
-/** Settings that change the picture and the measured depth, and nothing else. */
+/** Settings that change the picture and the measured depth; those of the shutter, instants too. */
 export interface PictureSettings {
   exposure: number;
   tone_curve: "filmic" | "linear";
@@ -446,6 +446,14 @@ export interface PictureSettings {
   full_well: number;
   read_noise: number;
   depth_sensor: string;
+  exposure_time_ms: number;
+  exposure_samples: number;
+  row_time_us: number;
+  read_out: "down" | "up";
+  gain: number;
+  vignetting: number;
+  lateral_colour: number;
+  jpeg_quality: number;
 }
 
 /** Some settings, by their names in `PictureSettings`. */
@@ -460,6 +468,14 @@ export interface PictureChanges {
   full_well?: number;
   read_noise?: number;
   depth_sensor?: string;
+  exposure_time_ms?: number;
+  exposure_samples?: number;
+  row_time_us?: number;
+  read_out?: "down" | "up";
+  gain?: number;
+  vignetting?: number;
+  lateral_colour?: number;
+  jpeg_quality?: number;
 }
 
 /** The names of the objects whose places a new room has taken. */

@@ -39,8 +39,8 @@
     FIELD(const double*, rows_from_own) /* (R, row_poses, 3, 4), of the other picture */  \
     FIELD(const uint8_t*, at_rest)      /* (R,): 1 where nothing moves */                 \
     FIELD(int64_t, row_poses)                                                             \
-    FIELD(float*, flow)                 /* (H, W, 2); these and the next may be null */   \
-    FIELD(float*, scene_flow)           /* (H, W, 3) */                                   \
+    FIELD(float*, flow)       /* (H, W, 2); these and the next may be null */             \
+    FIELD(float*, scene_flow) /* (H, W, 3) */                                             \
     FIELD(uint8_t*, valid)                                                                \
     FIELD(uint8_t*, occluded)                                                             \
     FIELD(uint8_t*, out_of_view)                                                          \
@@ -69,8 +69,9 @@ constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
 constexpr int64_t CHUNK = 256;  // pixels whose intermediate results stay in the first-level cache
 constexpr int64_t TILE_ROWS = 16;
 constexpr double ROUNDING_PX = 1e-3;
-constexpr double SAME_ROW = 1e-7;     // rows between two guesses that end the search
-constexpr int32_t MOST_ROUNDS = 64;   // of the search for a row
+constexpr double SAME_ROW = 1e-4;    // rows between two guesses that end the search: a place
+                                     // moves by a hundredth of that, or less
+constexpr int32_t MOST_ROUNDS = 64;  // of the search for a row
 
 typedef double d8 __attribute__((vector_size(64)));
 typedef int64_t l8 __attribute__((vector_size(64)));
@@ -367,14 +368,13 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
 }
 
 // Where a point of other axes is in the row of the other picture that sees it, and in the frame of
-// that row's camera; false if no row does. A row's pose is between those of its neighbours; points
-// beside the picture are where its first or last row has them.
+// that row's camera; false if no row does. The search begins at `row`. A row's pose is between
+// those of its neighbours; points beside the picture are where its first or last row has them.
 template <class Project>
-bool find_row(const Motion& in, int64_t group, const double* own, double shift, double begin,
+bool find_row(const Motion& in, int64_t group, const double* own, double shift, double& row,
               const Project& project, double* point, double* place) {
     const double* poses = in.rows_from_own + 12 * group * in.row_poses;
     const double last = static_cast<double>(in.row_poses - 1);
-    double row = begin;
     for (int32_t k = 0; k < MOST_ROUNDS; k++) {
         const double within = row < 0.0 ? 0.0 : row < last ? row : last;
         const int64_t upper = static_cast<int64_t>(within);
@@ -403,6 +403,7 @@ void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, i
     const sailenv::Lens& to = *in.to_lens;
     const double rate = 1.0 / in.duration;
     Places places;
+    double row = static_cast<double>(v);  // of the neighbour, where the search begins
     for (int64_t k = 0; k < count; k++) {
         const uint16_t asked = in.row_of_instance[in.instance[at + k]];
         const int64_t group = asked < in.rows ? asked : 0;
@@ -414,17 +415,19 @@ void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, i
         for (int axis = 0; axis < 3; axis++) point[axis] = seen[axis] *= reach;
         const bool rests = in.at_rest[group] != 0;
         transformed(in.own_from_rows + 12 * (group * in.height + v), seen, shift, own);
-        const bool valid = known && (rests || find_row(in, group, own, shift,
-                                                       static_cast<double>(v), project, point,
-                                                       place));
+        const bool found =
+            known && !rests && find_row(in, group, own, shift, row, project, point, place);
+        if (!found) row = static_cast<double>(v);
+        const bool valid = found || (known && rests);
         const bool moved = valid && !rests;
         places.known[k] = known;
         places.valid[k] = valid;
         places.u[k] = moved ? sailenv::pixel_u(to, place[0]) - static_cast<double>(u + k) : 0.0;
         places.v[k] = moved ? sailenv::pixel_v(to, place[1]) - static_cast<double>(v) : 0.0;
-        const double along = in.to_model < 0 ? point[2]
-                                             : std::sqrt(point[0] * point[0] + point[1] * point[1] +
-                                                         point[2] * point[2]);
+        const double along =
+            in.to_model < 0
+                ? point[2]
+                : std::sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
         places.z_to[k] = shift == 0.0 ? INFINITE : along;
         if (in.valid != nullptr) in.valid[at + k] = valid;
         if (!wanted.flow) continue;
@@ -478,8 +481,8 @@ SAILENV_KERNEL(motion)(int64_t threads, const Motion* given) {
     if (in.to_depth == nullptr) in.to_height = in.to_width = 0;
     const bool looks = in.occluded != nullptr || in.out_of_view != nullptr || in.hidden != nullptr;
     const Wanted wanted{in.flow != nullptr, in.scene_flow != nullptr, looks};
-    if (in.own_from_rows != nullptr &&
-        (in.rows_from_own == nullptr || in.at_rest == nullptr || in.row_poses < 1 || wanted.scene)) {
+    if (in.own_from_rows != nullptr && (in.rows_from_own == nullptr || in.at_rest == nullptr ||
+                                        in.row_poses < 1 || wanted.scene)) {
         return sailenv::STATUS_INVALID_ARGUMENT;
     }
     if (in.bent != 0 || in.own_from_rows != nullptr) {

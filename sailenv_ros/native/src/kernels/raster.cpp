@@ -368,7 +368,8 @@ RowRange bands_of(const Triangle& t, bool fine, int32_t bands, int32_t band_rows
     return {std::max(t.y0 - 1, 0) / rows, std::min(t.y1 / rows, bands - 1)};
 }
 
-// Lists, for each band, the triangles that reach into it; none reaches beyond bands `low` to `high`.
+// Lists, for each band, the triangles that reach into it; none reaches beyond bands `low` to
+// `high`.
 void sort_into_bands(Segment& segment, const Triangle* triangles, bool fine, int32_t bands,
                      int32_t band_rows, int32_t low, int32_t high) {
     segment.starts.assign(static_cast<size_t>(bands) + 1, 0);

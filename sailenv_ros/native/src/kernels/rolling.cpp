@@ -1,4 +1,5 @@
-// Pictures of a rolling shutter: each row is drawn as the camera and what moves stood at its instant.
+// Pictures of a rolling shutter: each row is drawn as the camera and what moves stood at its
+// instant.
 //
 // Of each band of rows the parts and clusters are found once that any of them may see; the rows are
 // then drawn one by one from these, by the same functions as a whole picture.
@@ -12,21 +13,21 @@
 #include "record.h"
 #include "render.h"
 
-#define ROLLING_FIELDS(FIELD)                                                               \
-    FIELD(sailenv::DrawingScratch**, scratch)                                               \
-    FIELD(const sailenv::View*, view)                                                       \
-    FIELD(const sailenv::Instances*, instances)                                             \
-    FIELD(const sailenv::DrawList*, parts)                                                  \
-    FIELD(const sailenv::DrawList*, glass)                                                  \
-    FIELD(const sailenv::Light*, light)                                                     \
-    FIELD(const sailenv::Outputs*, outputs)                                                 \
-    FIELD(int64_t, poses)                     /* as many as there are rows of the sensor */ \
-    FIELD(int64_t, lines)                     /* rows of the picture to each of those */    \
-    FIELD(const double*, camera_from_world)   /* (poses, 4, 4) */                           \
-    FIELD(const double*, world_from_camera)   /* (poses, 4, 4) */                           \
-    FIELD(int64_t, moving_count)                                                            \
-    FIELD(const int64_t*, moving)             /* (moving_count,): rows of `instances` */    \
-    FIELD(const double*, world_from_moving)   /* (poses, moving_count, 4, 4) */
+#define ROLLING_FIELDS(FIELD)                                                             \
+    FIELD(sailenv::DrawingScratch**, scratch)                                             \
+    FIELD(const sailenv::View*, view)                                                     \
+    FIELD(const sailenv::Instances*, instances)                                           \
+    FIELD(const sailenv::DrawList*, parts)                                                \
+    FIELD(const sailenv::DrawList*, glass)                                                \
+    FIELD(const sailenv::Light*, light)                                                   \
+    FIELD(const sailenv::Outputs*, outputs)                                               \
+    FIELD(int64_t, poses)                   /* as many as there are rows of the sensor */ \
+    FIELD(int64_t, lines)                   /* rows of the picture to each of those */    \
+    FIELD(const double*, camera_from_world) /* (poses, 4, 4) */                           \
+    FIELD(const double*, world_from_camera) /* (poses, 4, 4) */                           \
+    FIELD(int64_t, moving_count)                                                          \
+    FIELD(const int64_t*, moving)           /* (moving_count,): rows of `instances` */    \
+    FIELD(const double*, world_from_moving) /* (poses, moving_count, 4, 4) */
 
 SAILENV_RECORD(Rolling, rolling_picture, ROLLING_FIELDS)
 
@@ -135,7 +136,8 @@ BandMotion motion_of(const Rolling& in, int64_t first, int64_t end) {
     BandMotion found{first, end, (first + end) / 2, {0.0, 0.0}, {}};
     const double* to_eye = in.camera_from_world + 16 * found.middle;
     for (int64_t row = first; row < end; row++) {
-        widen(found.still, in.camera_from_world + 16 * row, in.world_from_camera + 16 * found.middle);
+        widen(found.still, in.camera_from_world + 16 * row,
+              in.world_from_camera + 16 * found.middle);
     }
     found.moving.assign(static_cast<size_t>(in.moving_count), Bound{0.0, 0.0});
     for (int64_t k = 0; k < in.moving_count; k++) {
@@ -314,13 +316,16 @@ void keep_seen(const Band& band, const DrawList& list, int32_t first_row, int32_
     }
 }
 
-// Lists what some rows may see. Through a lens that leaves lines straight, triangles that may lie in
-// these rows fill clusters of their own, of which nothing is known.
+// Lists what some rows may see. Through a lens that leaves lines straight, triangles that may lie
+// in these rows fill clusters of their own, of which nothing is known.
 void list_rows(const BandScene& scene, bool straight, int32_t first_row, int32_t last_row,
                RowScene& row) {
     row.clusters.clear();
-    row.corners.clear();
-    row.vertices.clear();
+    // Room for all; as many as are listed count.
+    row.corners.resize(3 * scene.triangles.size());
+    row.vertices.resize(3 * scene.triangles.size());
+    uint32_t *corners = row.corners.data(), *vertices = row.vertices.data();
+    int64_t listed_indices = 0;
     Cluster anywhere{};
     anywhere.radius = 1e30;
     for (const bool see_through : {false, true}) {
@@ -330,7 +335,7 @@ void list_rows(const BandScene& scene, bool straight, int32_t first_row, int32_t
             const size_t begun = row.clusters.size();
             const auto begin_cluster = [&](const Cluster& like) {
                 row.clusters.push_back(like);
-                row.clusters.back().first_index = static_cast<int64_t>(row.corners.size());
+                row.clusters.back().first_index = listed_indices;
                 row.clusters.back().index_count = 0;
             };
             for (int64_t c = part.first_cluster; c < part.end_cluster; c++) {
@@ -344,8 +349,11 @@ void list_rows(const BandScene& scene, bool straight, int32_t first_row, int32_t
                         row.clusters.back().index_count == MOST_INDICES) {
                         begin_cluster(anywhere);
                     }
-                    row.corners.insert(row.corners.end(), t.corner, t.corner + 3);
-                    row.vertices.insert(row.vertices.end(), t.vertex, t.vertex + 3);
+                    for (int j = 0; j < 3; j++) {
+                        corners[listed_indices + j] = t.corner[j];
+                        vertices[listed_indices + j] = t.vertex[j];
+                    }
+                    listed_indices += 3;
                     row.clusters.back().index_count += 3;
                 }
             }
