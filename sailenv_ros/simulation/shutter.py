@@ -78,7 +78,8 @@ def exposed(record: AgentRecord, snapshot: WorldSnapshot, camera: Camera, world:
         return Exposure(observed=now, samples=(), states=world.states())
     middle_ns = max(0, round(snapshot.sim_time_ns - 0.5 * span_ns))
     height = camera.intrinsics.height
-    offsets = (np.arange(height) - 0.5 * (height - 1)) * settings.row_time_us * 1e3
+    numbers = np.arange(height, dtype=np.float64)
+    offsets: NDArray[np.float64] = (numbers - 0.5 * (height - 1)) * settings.row_time_us * 1e3
     if settings.read_out == "up":
         offsets = -offsets
     known = _Track(record, now)

@@ -69,8 +69,12 @@ def test_gain_and_exposure_give_one_picture_without_noise(render: Render) -> Non
     """The tone curve gets the product of both."""
     _, scene, _, camera = two_instants()
     views = [
-        render(scene, replace(camera, picture=PictureSettings(**given)), "rgb")["rgb"]
-        for given in ({"gain": 1.5}, {"exposure": 1.5}, {})
+        render(scene, replace(camera, picture=settings), "rgb")["rgb"]
+        for settings in (
+            PictureSettings(gain=1.5),
+            PictureSettings(exposure=1.5),
+            PictureSettings(),
+        )
     ]
     np.testing.assert_array_equal(views[0], views[1])
     assert (views[0] != views[2]).any()

@@ -20,7 +20,8 @@ from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.native.ray_types import RAY_SCENE
 from sailenv_ros.native.relight_kernels import direct_light_delta
 from sailenv_ros.native.render_types import address, record
-from sailenv_ros.render.picture.post_pass import Light as SensorLight, PostPass
+from sailenv_ros.render.picture.post_pass import Light as SensorLight
+from sailenv_ros.render.picture.post_pass import PostPass
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light, LightType
 from tests.render.conftest import Render

@@ -104,7 +104,9 @@ def camera_through(lens: CameraIntrinsics, time_s: float, **picture: Any) -> Cam
 
 def row_times(middle_s: float) -> NDArray[np.float64]:
     """When each row is exposed."""
-    return middle_s + (np.arange(HEIGHT) - 0.5 * (HEIGHT - 1)) * ROW_S
+    numbers = np.arange(HEIGHT, dtype=np.float64)
+    times: NDArray[np.float64] = middle_s + (numbers - 0.5 * (HEIGHT - 1)) * ROW_S
+    return times
 
 
 def observed(lens: CameraIntrinsics, middle_s: float, **picture: Any) -> Observation:

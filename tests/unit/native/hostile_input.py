@@ -48,11 +48,12 @@ from sailenv_ros.rays.triangle_tree import in_leaves, triangle_tree
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN
-from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.picture_settings import PictureSettings
-from sailenv_ros.types.snapshot import Observation
+from sailenv_ros.types.row_poses import RowPoses
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from tests.support.baked import baked, chart, layer
 from tests.support.hostile_scenes import hostile_scenes
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of
@@ -254,11 +255,34 @@ def drive_drawing() -> None:
                         past = Observation(snapshot=snapshot, camera=seen)
                         with np.errstate(all="ignore"):
                             renderer.render(snapshot, past, seen, ("rgb", "flow", "normals"))
+                            if width > 8 and (lens is not camera.intrinsics or times > 1):
+                                continue
+                            rows = _wild_rows(snapshot, seen)
+                            past = replace(past, rows=rows)
+                            views = ("rgb", "flow", "occlusion")
+                            renderer.render(snapshot, past, seen, views, rows=rows)
         renderer.close()
     renderer = NativeRenderer(threads=2)
     scene = snapshot_of([Thing(model_of(box_mesh(1.0), alpha="blend"), Pose((0.0, 0.0, 0.0)))])
     renderer.render(scene, None, camera_at(width=4096, height=4096), ("instance",))
     renderer.close()
+
+
+def _wild_rows(snapshot: WorldSnapshot, camera: Camera) -> RowPoses:
+    """Rows of which some stand nowhere, and so do things."""
+    rng = np.random.default_rng(7)
+    height = camera.intrinsics.height
+    ids = snapshot.contents.instance_ids[::2].copy()
+    poses = np.broadcast_to(snapshot.world_from_body[::2], (height, len(ids), 4, 4)).copy()
+    cameras = np.broadcast_to(camera.world_from_camera, (height, 4, 4)).copy()
+    poses[::3] = rng.choice(np.array(NUMBERS), poses[::3].shape)
+    cameras[::4] = rng.choice(np.array(NUMBERS), cameras[::4].shape)
+    return RowPoses(
+        times_ns=np.arange(height),
+        world_from_camera=cameras,
+        ids=ids,
+        world_from_instance=poses,
+    )
 
 
 def drive_light_maps() -> None:
