@@ -102,7 +102,8 @@ def _note(records: Iterable[AgentRecord], agents: AgentTable, world: World) -> N
     snapshot = world.snapshot()
     for record in records:
         notes = record.notes
-        if notes and notes[-1].snapshot is snapshot:
+        # What was moved by hand since the last step stands where it stands now.
+        while notes and notes[-1].snapshot.sim_time_ns >= snapshot.sim_time_ns:
             notes.pop()
         notes.append(Observation(snapshot=snapshot, camera=agents.camera(record, world)))
         first_ns = snapshot.sim_time_ns - _span_ns(record) - 2 * _STEP_NS
@@ -116,12 +117,15 @@ class _Track:
     def __init__(self, record: AgentRecord, now: Observation) -> None:
         self._now = now
         present = now.snapshot
-        epoch, time_ns = present.contents.epoch, present.sim_time_ns
-        known = [
-            note
-            for note in record.notes
-            if note.snapshot.contents.epoch == epoch and note.snapshot.sim_time_ns < time_ns
-        ]
+        time_ns, step = present.sim_time_ns, present.step
+        known: list[Observation] = []
+        for note in reversed(record.notes):
+            # Steps without a note end what is known: the shutter took no time then.
+            if note.snapshot.step < step - 1:
+                break
+            if note.snapshot.step < step:
+                known.insert(0, note)
+                step = note.snapshot.step
         self._times = np.array([note.snapshot.sim_time_ns for note in known] + [time_ns])
         cameras = [note.camera.world_from_camera for note in known]
         self._cameras = np.stack([*cameras, now.camera.world_from_camera])

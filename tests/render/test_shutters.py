@@ -419,6 +419,33 @@ def test_at_the_start_and_after_a_jump_rows_see_one_instant() -> None:
     assert rows is None or (rows.world_from_camera == rows.world_from_camera[0]).all()
 
 
+def test_what_was_before_the_shutter_took_time_is_not_known() -> None:
+    """Nor what was between two times at which it did; what is put elsewhere moves in one step."""
+    made = simulation(row_time_us=400.0)
+    made.step(12)
+    made.set_picture(PictureSettings(), agent="shutter")
+    made.step(48)
+    made.set_picture(row_time_us=400.0, agent="shutter")
+    assert frame_of(made, "depth").row_poses is None
+    made.step(12)
+    made.set_position((1.0, 2.0, 1.5), agent="shutter")
+    rows = frame_of(made, "depth").row_poses
+    assert rows is not None
+    places = rows.world_from_camera[:, :3, 3]
+    in_last_step = rows.times_ns > made.world.sim_time_ns - 1e9 / 240
+    assert np.linalg.norm(np.diff(places[~in_last_step], axis=0), axis=1).max() < 1e-3
+    np.testing.assert_allclose(places[-1], (1.0, 2.0, 1.5), atol=1e-3)
+    made.step(1)
+    made.move_object(2, (0.0, 0.5, 1.4))
+    assert np.isfinite(frame_of(made, "depth")["depth"]).any()
+    made.step(12)
+    rows = frame_of(made, "depth").row_poses
+    assert rows is not None
+    still = rows.world_from_camera[:, :3, 3]
+    np.testing.assert_allclose(still, [(1.0, 2.0, 1.5)] * HEIGHT, atol=1e-9)
+    made.close()
+
+
 def test_equal_calls_give_equal_bytes() -> None:
     """Of a rolling, blurred, noisy picture too."""
     frames = []

@@ -40,8 +40,19 @@ OTHERS: dict[str, Any] = {
     "full_well": 300.0,
     "read_noise": 40.0,
     "depth_sensor": "kinect_v1",
+    "exposure_time_ms": 5.0,
+    "exposure_samples": 3,
+    "row_time_us": 100.0,
+    "read_out": "up",
+    "gain": 1.0,
+    "vignetting": 0.8,
+    "lateral_colour": 0.01,
+    "jpeg_quality": 40,
 }
 """Of each setting another value than the usual one."""
+
+SHUTTER = ("exposure_time_ms", "exposure_samples", "row_time_us", "read_out")
+"""Settings on which the instants of frames depend."""
 
 TRUTH = ("depth_m", "category", "instance", "flow", "flow_valid", "occlusion", "normals")
 """Arrays of a frame that no picture's settings may touch."""
@@ -91,10 +102,22 @@ def test_every_setting_is_seen(agent: Agent) -> None:
         usual = agent.set_picture(PictureSettings(), **needs.get(name, {}))
         before = agent.get_frame(VIEWS)
         assert agent.set_picture(**{name: value}) == replace(usual, **{name: value})
+        if name in SHUTTER:
+            continue
         after = agent.get_frame(VIEWS)
         seen = "measured_depth" if name == "depth_sensor" else "main"
         assert after[seen].tobytes() != before[seen].tobytes(), name
         assert truth(after) == truth(before), name
+
+
+def test_a_frame_belongs_to_the_middle_of_its_shutter(agent: Agent) -> None:
+    """Eight steps later, less half of 71 rows of 0.1 ms and 5 ms of exposure."""
+    before = agent.get_frame(VIEWS)
+    agent.set_picture(row_time_us=100.0, exposure_time_ms=5.0)
+    agent.step(8)
+    after = agent.get_frame(VIEWS)
+    later_ns = after["stamp_ns"] - before["stamp_ns"]
+    assert abs(later_ns - (8 * 1e9 / 240 - 0.5 * (71 * 1e5 + 5e6))) <= 2.0
 
 
 def test_streamed_frames_show_it(agent: Agent) -> None:

@@ -60,7 +60,7 @@ export class PicturePanel {
   #show(state) {
     const agent = agentOf(state);
     if (!agent) return;
-    say(this.#about, `Of ${agent.name}, for all who look through it. Labels, depth and flow do not depend on it.`);
+    say(this.#about, `Of ${agent.name}, for all who look through it. Of labels, depth and flow it changes the instants alone.`);
     for (const [name, control] of this.#controls) control.set(agent.picture[name]);
   }
 
