@@ -1,4 +1,4 @@
-"""Settings of the sensors of an agent's camera: shutter, exposure, tone curve, effects, depth sensor.
+"""Settings of an agent's sensors: shutter, exposure, tone curve, effects, depth sensor.
 
 Travels in `Camera` to the renderer. The shutter says at which instants rows are exposed. All else
 concerns the picture and the measured depth alone: no ground truth depends on it.
