@@ -1,9 +1,10 @@
-"""Calibrates from the pictures of `lens_views.py` with OpenCV, and compares with the truth.
+"""Calibrates from the pictures of `lens_views.py` with OpenCV and COLMAP, and tells how far off.
 
-    python lens_judges.py FOLDER      needs opencv-contrib-python 4.x, nothing of this project
+    python benchmarks/lens_judges.py FOLDER
 
-A row for each model: views, corners, the calibrator's residual [px], the errors of focal lengths
-and axis, and how far the two laws are apart over all pixels: median, 95 %, greatest [px].
+Needs opencv-contrib-python 4.x and pycolmap, and nothing of this project. A row for each model and
+calibrator: views, corners, residual (root of the mean squared distance) [px], errors of focal
+lengths and axis, and how far the two laws are apart over all pixels: median, 95 %, greatest [px].
 """
 
 from __future__ import annotations
@@ -11,15 +12,16 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import cv2
 import numpy as np
 
-COLUMNS, ROWS, SQUARE_M, MARKER_M = 12, 9, 0.1, 0.075
-LEAST_CORNERS = 12
+SQUARES, SIDE_M = 8, 1.04
+LEAST_CORNERS = 8
 
 Array: TypeAlias = Any
 Found: TypeAlias = list[tuple[Array, Array]]
@@ -32,25 +34,52 @@ ACCURATE = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 500, 1e-12)
 CV: Any = cv2
 
 
+def linear_light(picture: Array) -> Array:
+    """Return a picture's light from its sRGB bytes: an edge lies where half of it is left."""
+    share = picture.astype(np.float32) / 255.0
+    light = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return (255.0 * light).astype(np.float32)
+
+
 def detect(folder: Path) -> Found:
     """Return what was found in each picture in which enough corners were."""
     dictionary = CV.aruco.getPredefinedDictionary(CV.aruco.DICT_5X5_250)
-    board = CV.aruco.CharucoBoard((COLUMNS, ROWS), SQUARE_M, MARKER_M, dictionary)
+    square = SIDE_M / SQUARES
+    board = CV.aruco.CharucoBoard((SQUARES, SQUARES), square, 0.5 * square, dictionary)
     parameters = CV.aruco.DetectorParameters()
-    parameters.adaptiveThreshWinSizeMax = 43
+    parameters.adaptiveThreshWinSizeMax = 63
     detector = CV.aruco.CharucoDetector(board)
     detector.setDetectorParameters(parameters)
-    stop = (CV.TERM_CRITERIA_EPS | CV.TERM_CRITERIA_COUNT, 50, 1e-4)
     found = []
     for path in sorted(folder.glob("*.png")):
         picture = CV.imread(str(path), CV.IMREAD_GRAYSCALE)
         corners, ids, _, _ = detector.detectBoard(picture)
         if ids is None or len(ids) < LEAST_CORNERS:
             continue
-        corners = CV.cornerSubPix(picture, corners, (5, 5), (-1, -1), stop)
         points = board.getChessboardCorners()[ids.ravel()].astype(np.float64)
-        found.append((points, corners.reshape(-1, 2).astype(np.float64)))
-    return found
+        found.append((points, refined(linear_light(picture), corners.reshape(-1, 2))))
+    return [(points[kept], pixels[kept]) for points, (pixels, kept) in found if kept.any()]
+
+
+def refined(light: Array, corners: Array) -> tuple[Array, Array]:
+    """Return corners to a part of a pixel, and which of them are.
+
+    Each is looked for in a window that holds no other corner, and nothing of a marker.
+    """
+    stop = (CV.TERM_CRITERIA_EPS | CV.TERM_CRITERIA_COUNT, 100, 1e-4)
+    height, width = light.shape
+    apart = np.linalg.norm(corners[:, None] - corners[None], axis=-1)
+    nearest = np.min(apart + np.diag(np.full(len(corners), np.inf)), axis=1)
+    places, kept = np.empty(corners.shape), np.zeros(len(corners), np.bool_)
+    for number, (corner, near) in enumerate(zip(corners, nearest, strict=True)):
+        half = int(min(max(0.17 * near, 2.0), 8.0))
+        start = corner.astype(np.float32).reshape(1, 1, 2)
+        for _ in range(2):
+            start = CV.cornerSubPix(light, start, (half, half), (-1, -1), stop)
+        x, y = places[number] = start.reshape(2)
+        inside = half + 1 <= x < width - half - 2 and half + 1 <= y < height - half - 2
+        kept[number] = inside and near > 14.0 and math.dist((x, y), corner) < 2.0
+    return places, kept
 
 
 def brown(found: Found, size: tuple[int, int], flags: int) -> Calibrated:
@@ -68,23 +97,7 @@ def brown(found: Found, size: tuple[int, int], flags: int) -> Calibrated:
     )
 
 
-def pinhole(found: Found, size: tuple[int, int]) -> Calibrated:
-    """Calibrate without distortion."""
-    fixed = CV.CALIB_FIX_K1 | CV.CALIB_FIX_K2 | CV.CALIB_FIX_K3
-    return brown(found, size, fixed | CV.CALIB_ZERO_TANGENT_DIST)
-
-
-def plumb_bob(found: Found, size: tuple[int, int]) -> Calibrated:
-    """Calibrate with five coefficients."""
-    return brown(found, size, 0)
-
-
-def rational_polynomial(found: Found, size: tuple[int, int]) -> Calibrated:
-    """Calibrate with eight coefficients."""
-    return brown(found, size, CV.CALIB_RATIONAL_MODEL)
-
-
-def equidistant(found: Found, size: tuple[int, int]) -> Calibrated:
+def fisheye(found: Found, size: tuple[int, int]) -> Calibrated:
     """Calibrate by `cv2.fisheye.calibrate`.
 
     It begins in the plane at depth 1, so it gets a first guess and no points near 90°.
@@ -110,21 +123,21 @@ def equidistant(found: Found, size: tuple[int, int]) -> Calibrated:
         flags=flags | options.CALIB_USE_INTRINSIC_GUESS,
         criteria=ACCURATE,
     )
-
-    def project(rays: Array) -> Array:
-        # Its own projectPoints divides by z, which is 0 at 90°; its law does not.
-        x, y, z = rays.T
-        across = np.hypot(x, y)
-        angle = np.arctan2(across, z)
-        bent = angle * (1 + sum(law[k, 0] * angle ** (2 * k + 2) for k in range(4)))
-        scale = np.where(across > 1e-12, bent / np.maximum(across, 1e-12), 1.0)
-        places = np.stack([x * scale, y * scale], axis=1)
-        return places * matrix[[0, 1], [0, 1]] + matrix[:2, 2]
-
-    return rms, matrix, project
+    return rms, matrix, partial(fisheye_law, matrix, law.ravel())
 
 
-def mei(found: Found, size: tuple[int, int]) -> Calibrated:
+def fisheye_law(matrix: Array, law: Array, rays: Array) -> Array:
+    """Return pixels of rays; `cv2.fisheye.projectPoints` divides by z, which is 0 at 90°."""
+    x, y, z = rays.T
+    across = np.hypot(x, y)
+    angle = np.arctan2(across, z)
+    bent = angle * (1 + sum(law[k] * angle ** (2 * k + 2) for k in range(4)))
+    scale = np.where(across > 1e-12, bent / np.maximum(across, 1e-12), 1.0)
+    places = np.stack([x * scale, y * scale], axis=1)
+    return places * matrix[[0, 1], [0, 1]] + matrix[:2, 2]
+
+
+def omnidir(found: Found, size: tuple[int, int]) -> Calibrated:
     """Calibrate by `cv2.omnidir.calibrate`."""
     objects = [points.reshape(1, -1, 3) for points, _ in found]
     images = [pixels.reshape(1, -1, 2) for _, pixels in found]
@@ -142,33 +155,106 @@ def mei(found: Found, size: tuple[int, int]) -> Calibrated:
     return rms, matrix, project
 
 
-CALIBRATORS = (pinhole, plumb_bob, rational_polynomial, equidistant, mei)
+def colmap(name: str, found: Found, size: tuple[int, int]) -> Calibrated:
+    """Calibrate by COLMAP's bundle adjustment over the board's points, which stay.
+
+    It begins as `cv2.calibrateCamera` or `cv2.fisheye.calibrate` do: from a rough focal length.
+    COLMAP counts from the picture's corner, half a pixel from ours.
+    """
+    import pycolmap
+
+    wide = "FISHEYE" in name
+    guess = size[1] / math.radians(150.0) if wide else 0.7 * size[0]
+    scene = pycolmap.Reconstruction()
+    camera = pycolmap.Camera.create(1, pycolmap.CameraModelId[name], guess, *size)
+    scene.add_camera_with_trivial_rig(camera)
+    camera = scene.cameras[1]
+    numbers: dict[tuple[float, ...], int] = {}
+    for points, _ in found:
+        for point in map(tuple, points):
+            if point not in numbers:
+                numbers[point] = scene.add_point3D(np.array(point), pycolmap.Track())
+    config = pycolmap.BundleAdjustmentConfig()
+    for number, (points, pixels) in enumerate(found, 1):
+        first = pycolmap.AbsolutePoseEstimationOptions()
+        first.ransac.max_error = 40.0
+        pose = pycolmap.estimate_and_refine_absolute_pose(pixels + 0.5, points, camera, first)
+        image = pycolmap.Image(name=str(number), points2D=pixels + 0.5, camera_id=1, image_id=number)
+        scene.add_image_with_trivial_frame(image, pose["cam_from_world"])
+        for k, point in enumerate(map(tuple, points)):
+            scene.add_observation(numbers[point], pycolmap.TrackElement(number, k))
+        config.add_image(number)
+    for number in numbers.values():
+        config.add_constant_point(number)
+    options = pycolmap.BundleAdjustmentOptions()
+    options.refine_principal_point = True
+    options.print_summary = False
+    options.ceres.solver_options.max_num_iterations = 1000
+    options.ceres.solver_options.gradient_tolerance = 1e-12
+    pycolmap.create_default_bundle_adjuster(options, config, scene).solve()
+    camera = scene.cameras[1]
+    fx, fy, cx, cy = camera.params[:4]
+    matrix = np.array([[fx, 0.0, cx - 0.5], [0.0, fy, cy - 0.5], [0.0, 0.0, 1.0]])
+    squares = []
+    for number, (points, pixels) in enumerate(found, 1):
+        seen = scene.images[number].cam_from_world() * points
+        squares.append(((camera.img_from_cam(seen) - 0.5 - pixels) ** 2).sum(axis=1))
+    law: Callable[[Array], Array] = lambda rays: camera.img_from_cam(rays) - 0.5  # noqa: E731
+    if wide:
+        law = partial(fisheye_law, matrix, camera.params[4:])
+    return math.sqrt(np.concatenate(squares).mean()), matrix, law
+
+
+FIXED = CV.CALIB_FIX_K1 | CV.CALIB_FIX_K2 | CV.CALIB_FIX_K3 | CV.CALIB_ZERO_TANGENT_DIST
+CALIBRATORS: Mapping[str, Sequence[tuple[str, Callable[..., Calibrated]]]] = {
+    "pinhole": [("cv2.calibrateCamera", partial(brown, flags=FIXED))],
+    "plumb_bob": [
+        ("cv2.calibrateCamera", partial(brown, flags=0)),
+        ("pycolmap, OPENCV", partial(colmap, "OPENCV")),
+    ],
+    "rational_polynomial": [
+        ("cv2.calibrateCamera, rational", partial(brown, flags=CV.CALIB_RATIONAL_MODEL)),
+        ("pycolmap, FULL_OPENCV", partial(colmap, "FULL_OPENCV")),
+    ],
+    "thin_prism": [
+        (
+            "cv2.calibrateCamera, rational and thin prism",
+            partial(brown, flags=CV.CALIB_RATIONAL_MODEL | CV.CALIB_THIN_PRISM_MODEL),
+        )
+    ],
+    "equidistant": [
+        ("cv2.fisheye.calibrate", fisheye),
+        ("pycolmap, OPENCV_FISHEYE", partial(colmap, "OPENCV_FISHEYE")),
+    ],
+    "mei": [("cv2.omnidir.calibrate", omnidir)],
+}
 
 
 def main() -> None:
     """Judge all models that have pictures."""
-    print("|model|views|corners|residual|focal lengths|axis|laws apart|\n" + 7 * "|---" + "|")
-    for calibrate in CALIBRATORS:
-        folder = Path(sys.argv[1]) / calibrate.__name__
+    print("|model|calibrator|views|corners|residual|fx, fy|cx, cy|laws apart|\n" + 8 * "|---" + "|")
+    for model, calibrators in CALIBRATORS.items():
+        folder = Path(sys.argv[1]) / "charuco" / model
         if not (folder / "truth.json").exists():
             continue
         lens = json.loads((folder / "truth.json").read_text())["lens"]
         found = detect(folder)
-        rms, matrix, project = calibrate(found, (lens["width"], lens["height"]))
         truth = np.array(lens["K"])
-        focal = max(abs(matrix[k, k] / truth[k, k] - 1) for k in (0, 1))
-        axis = max(abs(matrix[k, 2] - truth[k, 2]) / truth[k, k] for k in (0, 1))
         places, rays = (
             np.ascontiguousarray(part)
             for part in np.split(np.load(folder / "rays.npy"), [2], axis=1)
         )
-        apart = np.linalg.norm(project(rays) - places, axis=1)
-        low, high, most = np.percentile(apart, [50, 95, 100])
         corners = sum(len(pixels) for _, pixels in found)
-        print(
-            f"|{calibrate.__name__}|{len(found)}|{corners}|{rms:.3f}|{100 * focal:.3f} %|"
-            f"{100 * axis:.3f} %|{low:.3f}, {high:.3f}, {most:.3f}|"
-        )
+        for name, calibrate in calibrators:
+            rms, matrix, project = calibrate(found, (lens["width"], lens["height"]))
+            focal = max(abs(matrix[k, k] / truth[k, k] - 1) for k in (0, 1))
+            axis = max(abs(matrix[k, 2] / truth[k, 2] - 1) for k in (0, 1))
+            apart = np.linalg.norm(project(rays) - places, axis=1)
+            low, high, most = np.percentile(apart, [50, 95, 100])
+            print(
+                f"|{model}|{name}|{len(found)}|{corners}|{rms:.3f}|{100 * focal:.3f} %|"
+                f"{100 * axis:.3f} %|{low:.3f}, {high:.3f}, {most:.3f}|"
+            )
 
 
 if __name__ == "__main__":

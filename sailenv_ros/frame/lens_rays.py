@@ -18,7 +18,22 @@ from sailenv_ros.native.lens_models import MOST_COEFFICIENTS
 from sailenv_ros.native.motion_kernels import BentLenses
 from sailenv_ros.types.camera import CameraIntrinsics
 
-__all__ = ["bent_lenses", "depth_shares", "ranges_of_depths", "reach_of", "reach_view", "unit_rays"]
+__all__ = [
+    "bent_lenses",
+    "depth_shares",
+    "ranges_of_depths",
+    "rays_of_half_pixels",
+    "reach_of",
+    "reach_view",
+    "unit_rays",
+]
+
+_SIX = np.array([3.0, -25.0, 150.0, 150.0, -25.0, 3.0]) / 256.0
+_SIX_LESS_FOUR = _SIX - np.array([0.0, -1.0, 9.0, 9.0, -1.0, 0.0]) / 16.0
+"""Weights of Lagrange's polynomial in the middle of its nodes."""
+
+_LEAST_SURE = 1e-7
+"""By how much the polynomials may differ: 1e-4 px at a focal length of 1000 px."""
 
 _NO_COEFFICIENTS = np.zeros(MOST_COEFFICIENTS)
 
@@ -37,6 +52,40 @@ def unit_rays(lens: CameraIntrinsics) -> NDArray[np.float64]:
     rays = np.ascontiguousarray(lens.unit_rays())
     rays.flags.writeable = False
     return rays
+
+
+def rays_of_half_pixels(lens: CameraIntrinsics) -> NDArray[np.float64]:
+    """Return (2 H + 1, 2 W + 1, 3) float64: where samples half a pixel apart look; a new array.
+
+    Those of odd numbers are the pixels' centres. The others lie between the rays of six pixels in a
+    line, by the polynomial through these; where one through four is not as good, or the lens does
+    not see all of them, the lens is asked. nan where it sees nothing.
+    """
+    height, width, side = lens.height, lens.width, len(_SIX) // 2
+    around = np.empty((height + 2 * side, width + 2 * side, 3))
+    around[side:-side, side:-side] = unit_rays(lens)
+    rows, columns = np.indices(around.shape[:2]) - side
+    ring = (rows < 0) | (rows >= height) | (columns < 0) | (columns >= width)
+    around[ring] = lens.unit_rays_through(np.stack([columns[ring], rows[ring]], axis=-1))
+    wide = np.empty((height + 2 * side, 2 * width + 1, 3))
+    wide[:, 1::2] = around[:, side:-side]
+    wide[:, ::2], sure = _between(around, 1)
+    rays = np.empty((2 * height + 1, 2 * width + 1, 3))
+    known = np.ones(rays.shape[:2], np.bool_)
+    rays[1::2], known[1::2, ::2] = wide[side:-side], sure[side:-side]
+    rays[::2], known[::2] = _between(wide, 0)
+    places = np.argwhere(~known)
+    rays[~known] = lens.unit_rays_through(0.5 * (places[:, ::-1] - 1))
+    return rays
+
+
+def _between(rays: NDArray[np.float64], axis: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return rays in the middle between neighbours along an axis, and which are good enough."""
+    count = rays.shape[axis] - len(_SIX) + 1
+    parts = [rays[(slice(None),) * axis + (slice(k, k + count),)] for k in range(len(_SIX))]
+    six = sum(weight * part for weight, part in zip(_SIX, parts, strict=True))
+    off = sum(weight * part for weight, part in zip(_SIX_LESS_FOUR, parts, strict=True))
+    return np.asarray(six), (np.abs(off) <= _LEAST_SURE).all(axis=-1)
 
 
 @lru_cache(maxsize=8)

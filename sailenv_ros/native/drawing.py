@@ -12,7 +12,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.lens_tables import CUBE_FACE, LENS_TABLE, LENS_TILE
+from sailenv_ros.native.lens_tables import CUBE_FACE, LENS_TABLE, LENS_TILES
 from sailenv_ros.native.library import Kernel, checked
 from sailenv_ros.native.records import RecordKernel
 from sailenv_ros.native.render_types import (
@@ -302,7 +302,7 @@ def structure_sizes() -> dict[str, tuple[int, int]]:
         "layer_sum": LAYER_SUM,
         "lens_table": LENS_TABLE,
         "cube_face": CUBE_FACE,
-        "lens_tile": LENS_TILE,
+        "lens_tiles": LENS_TILES,
     }
     sizes = np.zeros(len(ours), np.int64)
     _STRUCTURES(sizes)

@@ -13,9 +13,9 @@ __all__ = [
     "CUBE_FACES",
     "FACE_CELLS",
     "FACE_NODE",
-    "LENS_RUN_TILES",
+    "LENS_GROUP_TILES",
     "LENS_TABLE",
-    "LENS_TILE",
+    "LENS_TILES",
     "LENS_TILE_SHAPE",
     "UNKNOWN_BEND",
 ]
@@ -25,8 +25,8 @@ FACE_CELLS, BLOCK_CELLS = 128, 8
 LENS_TILE_SHAPE = 8, 8
 """Rows and columns of a tile."""
 
-LENS_RUN_TILES = 16
-"""Tiles side by side whose bounds are told together."""
+LENS_GROUP_TILES = 8
+"""Tiles side by side that are looked at together."""
 
 UNKNOWN_BEND = 1e30
 
@@ -40,9 +40,11 @@ CUBE_FACE = structure(
     ("all", "<i2", 4),
 )
 
-LENS_TILE = structure(("low high", "<f4", 2), ("faces", "<i4"))
+LENS_TILES = structure(
+    ("low_x low_y high_x high_y", "<f4", LENS_GROUP_TILES), ("faces", "<i4", LENS_GROUP_TILES)
+)
 
 LENS_TABLE = structure(
-    ("x_at y_at face_at steps_at tiles_at tile_runs_at faces_at", ADDRESS),
-    ("stride tile_columns run_columns rows columns step_stride step_rows several fine", "<i8"),
+    ("x_at y_at face_at steps_at tiles_at faces_at", ADDRESS),
+    ("stride tile_groups rows columns step_stride step_rows several fine", "<i8"),
 )

@@ -16,17 +16,17 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import unit_rays
+from sailenv_ros.frame.lens_rays import rays_of_half_pixels, unit_rays
 from sailenv_ros.native.lens_tables import (
     BLOCK_CELLS,
     CUBE_FACE,
     CUBE_FACES,
     FACE_CELLS,
     FACE_NODE,
-    LENS_RUN_TILES,
+    LENS_GROUP_TILES,
     LENS_TABLE,
-    LENS_TILE,
     LENS_TILE_SHAPE,
+    LENS_TILES,
     UNKNOWN_BEND,
 )
 from sailenv_ros.native.render_types import address, record
@@ -117,18 +117,21 @@ def lens_samples(lens: CameraIntrinsics, fine: bool = False) -> LensSamples:
         Of samples half a pixel apart; those of odd numbers are the pixels' centres.
     """
     pixels = None if not fine else lens_samples(lens)
-    rays = _rays(lens, fine)
-    alone = _sees_ahead_alone(rays if pixels is None else _rays(lens, False))
+    rays = unit_rays(lens) if pixels is None else rays_of_half_pixels(lens)
+    alone = _sees_ahead_alone(unit_rays(lens))
     rows, columns = rays.shape[:2]
     stride = -(-(columns + ROW_PADDING) // ROW_STEP) * ROW_STEP
     x, y = np.full((2, rows, stride), np.nan, np.float32)
     face = np.zeros((rows, stride), np.uint8)
-    face[:, :columns] = 0 if alone else _faces_of(rays)
-    for number in range(CUBE_FACES):
-        here = face[:, :columns] == number
-        if here.any():
-            at_x, at_y = _places(rays[here], number)
-            x[:, :columns][here], y[:, :columns][here] = at_x, at_y
+    if alone:
+        x[:, :columns], y[:, :columns] = _places(rays, 0)
+    else:
+        face[:, :columns] = _faces_of(rays)
+        for number in range(CUBE_FACES):
+            here = face[:, :columns] == number
+            if here.any():
+                at_x, at_y = _places(rays[here], number)
+                x[:, :columns][here], y[:, :columns][here] = at_x, at_y
     if pixels is None:
         steps = _steps(rays, face[:, :columns], stride)
     else:
@@ -136,12 +139,9 @@ def lens_samples(lens: CameraIntrinsics, fine: bool = False) -> LensSamples:
         for of_samples, of_pixels in ((x, pixels.x), (y, pixels.y), (face, pixels.face)):
             of_samples[1:rows:2, 1:columns:2] = of_pixels[:, : lens.width]
         steps = pixels._kept[0]
-    tiles, runs = (
-        _tiles(x[:, :columns], y[:, :columns], face[:, :columns], tile)
-        for tile in (LENS_TILE_SHAPE, (LENS_TILE_SHAPE[0], LENS_TILE_SHAPE[1] * LENS_RUN_TILES))
-    )
+    tiles = _tiles(x[:, :columns], y[:, :columns], face[:, :columns])
     cube = np.zeros(CUBE_FACES, CUBE_FACE)
-    kept: list[NDArray[Any]] = [steps, tiles, runs, cube]
+    kept: list[NDArray[Any]] = [steps, tiles, cube]
     for number in range(CUBE_FACES):
         cube["turn"][number] = FACE_TURNS[number].reshape(-1)
         here = (face == number) & np.isfinite(x)
@@ -156,11 +156,9 @@ def lens_samples(lens: CameraIntrinsics, fine: bool = False) -> LensSamples:
         face_at=address(face),
         steps_at=address(steps),
         tiles_at=address(tiles),
-        tile_runs_at=address(runs),
         faces_at=address(cube),
         stride=stride,
-        tile_columns=tiles.shape[1],
-        run_columns=runs.shape[1],
+        tile_groups=tiles.shape[1],
         rows=rows,
         columns=columns,
         step_stride=steps.shape[2],
@@ -171,15 +169,6 @@ def lens_samples(lens: CameraIntrinsics, fine: bool = False) -> LensSamples:
     return LensSamples(table, x, y, face, tuple(kept))
 
 
-def _rays(lens: CameraIntrinsics, fine: bool) -> Doubles:
-    """Return rays (R, C, 3) of all samples, in the optical frame; NaN where there is none."""
-    if not fine:
-        return unit_rays(lens)
-    u = 0.5 * (np.arange(2 * lens.width + 1) - 1)
-    v = 0.5 * (np.arange(2 * lens.height + 1) - 1)
-    return lens.unit_rays_through(np.stack(np.meshgrid(u, v), axis=-1))
-
-
 def _sees_ahead_alone(rays: Doubles) -> bool:
     across = np.hypot(rays[..., 0], rays[..., 1])
     angle = np.degrees(np.arctan2(across, rays[..., 2]))
@@ -187,18 +176,22 @@ def _sees_ahead_alone(rays: Doubles) -> bool:
 
 
 def _faces_of(rays: Doubles) -> NDArray[np.uint8]:
-    x, y, z = np.moveaxis(rays, -1, 0)
-    along = np.stack([z, x, -x, y, -y, -z])
-    faces: NDArray[np.uint8] = np.argmax(np.where(np.isnan(along), -np.inf, along), axis=0).astype(
-        np.uint8
-    )
+    """Return the face of each ray (R, C, 3): the axis that it follows most, the first of equals."""
+    x, y, most = (np.ascontiguousarray(part) for part in np.moveaxis(rays, -1, 0))
+    faces = np.zeros(most.shape, np.uint8)
+    behind = -most
+    for number, along in enumerate((x, -x, y, -y, behind), 1):
+        np.putmask(faces, along > most, number)
+        np.maximum(most, along, out=most)
     return faces
 
 
 def _places(rays: Doubles, face: int) -> tuple[Doubles, Doubles]:
     """Return x and y of rays (..., 3) on a face; NaN where they do not lead there."""
-    x, y, z = np.moveaxis(rays @ FACE_TURNS[face].T, -1, 0)
-    z = np.where(z > 0.0, z, np.nan)
+    # Turns of faces exchange axes and their signs alone.
+    axes = np.abs(FACE_TURNS[face]).argmax(axis=1)
+    x, y, z = (rays[..., axis] * FACE_TURNS[face][k, axis] for k, axis in enumerate(axes))
+    z[~(z > 0.0)] = np.nan
     return x / z, y / z
 
 
@@ -231,29 +224,29 @@ def _mean_steps(places: Doubles, axis: int) -> Doubles:
 
 
 def _tiles(
-    x: NDArray[np.float32], y: NDArray[np.float32], face: NDArray[np.uint8], shape: tuple[int, int]
+    x: NDArray[np.float32], y: NDArray[np.float32], face: NDArray[np.uint8]
 ) -> NDArray[np.void]:
-    """Return (tile rows, tile columns) LENS_TILE of tiles of a shape."""
-    high, wide = shape
-    rows, columns = -(-x.shape[0] // high), -(-x.shape[1] // wide)
-    widths = (0, rows * high - x.shape[0]), (0, columns * wide - x.shape[1])
+    """Return (tile rows, tile groups) LENS_TILES."""
+    high, wide = LENS_TILE_SHAPE
+    group = LENS_GROUP_TILES * wide
+    rows, groups = -(-x.shape[0] // high), -(-x.shape[1] // group)
+    widths = (0, rows * high - x.shape[0]), (0, groups * group - x.shape[1])
 
     def split(values: NDArray[Any], filling: float) -> NDArray[Any]:
         padded = np.pad(values, widths, constant_values=filling)
-        grouped = padded.reshape(rows, high, columns, wide).transpose(0, 2, 1, 3)
-        return grouped.reshape(rows, columns, high * wide)
+        grouped = padded.reshape(rows, high, groups, LENS_GROUP_TILES, wide)
+        return grouped.transpose(1, 4, 0, 2, 3).reshape(high * wide, rows, groups, LENS_GROUP_TILES)
 
-    there = split(np.isfinite(x), False)
-    bits = np.where(there, 1 << split(face, 0).astype(np.int32), 0)
-    tiles = np.zeros((rows, columns), LENS_TILE)
-    tiles["faces"] = np.bitwise_or.reduce(bits, axis=-1)
+    places = [split(values, np.nan) for values in (x, y)]
+    bits = np.left_shift(1, split(face, 0), dtype=np.int32)
+    bits[np.isnan(places[0])] = 0
+    tiles = np.zeros((rows, groups), LENS_TILES)
+    tiles["faces"] = np.bitwise_or.reduce(bits, axis=0)
     alone = (tiles["faces"] & (tiles["faces"] - 1)) == 0
-    for axis, places in enumerate((x, y)):
-        own = split(places, np.nan)
-        low = np.where(there, own, np.inf).min(axis=-1)
-        most = np.where(there, own, -np.inf).max(axis=-1)
-        tiles["low"][..., axis] = np.where(alone, low, -np.inf)
-        tiles["high"][..., axis] = np.where(alone, most, np.inf)
+    for name, own in zip("xy", places, strict=True):
+        low, most = np.fmin.reduce(own, axis=0), np.fmax.reduce(own, axis=0)
+        tiles["low_" + name] = np.where(alone, low, -np.inf)
+        tiles["high_" + name] = np.where(alone, most, np.inf)
     return tiles
 
 

@@ -61,14 +61,14 @@ struct PlaceFunction {
 
     explicit PlaceFunction(const float* f) : a(f[0]), b(f[1]), c(f[2]) {}
     LANES_METHOD f8 at(f8 x, f8 y) const { return a * x + (b * y + c); }
-    // The most and the least that it is at a tile's samples, as these compute it.
-    LANES_METHOD float most_within(const LensTile& tile) const {
-        return a * (a > 0.0f ? tile.high[0] : tile.low[0]) +
-               (b * (b > 0.0f ? tile.high[1] : tile.low[1]) + c);
+    // The most and the least that it is at the samples of tiles, as these compute it.
+    LANES_METHOD f8 most_within(const LensTiles& tiles) const {
+        return a * load(a > 0.0f ? tiles.high_x : tiles.low_x) +
+               (b * load(b > 0.0f ? tiles.high_y : tiles.low_y) + c);
     }
-    LANES_METHOD float least_within(const LensTile& tile) const {
-        return a * (a > 0.0f ? tile.low[0] : tile.high[0]) +
-               (b * (b > 0.0f ? tile.low[1] : tile.high[1]) + c);
+    LANES_METHOD f8 least_within(const LensTiles& tiles) const {
+        return a * load(a > 0.0f ? tiles.low_x : tiles.high_x) +
+               (b * load(b > 0.0f ? tiles.low_y : tiles.high_y) + c);
     }
 };
 
@@ -111,10 +111,13 @@ struct LensDrawing {
     // Draws a rectangle of samples; `WITHIN` if they all lie within the edges.
     template <bool WITHIN>
     LANES_METHOD void draw(int32_t top, int32_t bottom, int32_t left, int32_t right) const {
+        // Copies, for the same reason.
+        const float *xs = lens.x + top * lens.stride, *ys = lens.y + top * lens.stride;
+        const uint8_t* faces = lens.face + top * lens.stride;
+        float* near_row = inverse_depth + top * stride;
+        int32_t* seen = visible == nullptr ? nullptr : visible + top * stride;
+        const int64_t lens_step = lens.stride, step = stride;
         for (int32_t row = top; row <= bottom; row++) {
-            const float *xs = lens.x + row * lens.stride, *ys = lens.y + row * lens.stride;
-            const uint8_t* faces = lens.face + row * lens.stride;
-            float* near_row = inverse_depth + row * stride;
             for (int32_t x = left; x <= right; x += 8) {
                 const f8 at = load(xs + x), down = load(ys + x), before = load(near_row + x);
                 const f8 n = nearness.at(at, down);
@@ -130,32 +133,29 @@ struct LensDrawing {
                         opaque_pixels(t, masked, part, at, down, steps_at(lens, row, x), n, drawn);
                 }
                 store(near_row + x, drawn ? n : before);
-                if (visible != nullptr) {
-                    int32_t* seen = visible + row * stride + x;
-                    store(seen, drawn ? tag : load(seen));
-                }
+                if (seen != nullptr) store(seen + x, drawn ? tag : load(seen + x));
             }
+            xs += lens_step;
+            ys += lens_step;
+            faces += lens_step;
+            near_row += step;
+            if (seen != nullptr) seen += step;
         }
     }
 
-    // False where none of a tile's samples can be seen to lie in the triangle.
-    LANES_METHOD bool may_reach(const LensTile& tile) const {
-        return (tile.faces >> face & 1) && !(edge0.most_within(tile) < least0) &&
-               !(edge1.most_within(tile) < least1) && !(edge2.most_within(tile) < least2);
+    // A bit for each tile of which samples may lie in the triangle.
+    LANES_METHOD uint32_t reached(const LensTiles& tiles) const {
+        const i8 here = (load(tiles.faces) & (1 << face)) != 0;
+        return lane_bits(here & ~((edge0.most_within(tiles) < least0) |
+                                  (edge1.most_within(tiles) < least1) |
+                                  (edge2.most_within(tiles) < least2)));
     }
 
-    // Draws some rows of a tile, whose columns are drawn at once.
-    LANES_METHOD void draw_tile(const LensTile& tile, int32_t top, int32_t bottom,
-                                int32_t left) const {
-        if (!may_reach(tile)) return;
-        const bool within = edge0.least_within(tile) >= least0 &&
-                            edge1.least_within(tile) >= least1 &&
-                            edge2.least_within(tile) >= least2;
-        if (within) {
-            draw<true>(top, bottom, left, left);
-        } else {
-            draw<false>(top, bottom, left, left);
-        }
+    // A bit for each tile all of whose samples do.
+    LANES_METHOD uint32_t covered(const LensTiles& tiles) const {
+        return lane_bits((edge0.least_within(tiles) >= least0) &
+                         (edge1.least_within(tiles) >= least1) &
+                         (edge2.least_within(tiles) >= least2));
     }
 };
 
@@ -170,18 +170,24 @@ void draw_tiles(const Triangle& t, uint32_t number, const Part& part, const Proj
     const LensTable& lens = *p.table;
     const int32_t first = t.x0 / LENS_TILE_COLUMNS, last = t.x1 / LENS_TILE_COLUMNS;
     for (int32_t row = y0 / LENS_TILE_ROWS; row <= y1 / LENS_TILE_ROWS; row++) {
-        const LensTile* tiles = lens.tiles + row * lens.tile_columns;
-        const LensTile* runs = lens.tile_runs + row * lens.run_columns;
+        const LensTiles* groups = lens.tiles + row * lens.tile_groups;
         const int32_t top = std::max(y0, row * LENS_TILE_ROWS),
                       bottom = std::min(y1, (row + 1) * LENS_TILE_ROWS - 1);
-        for (int32_t k = first; k <= last;) {
-            const int32_t run = k / LENS_RUN_TILES;
-            const int32_t end = std::min(last, (run + 1) * LENS_RUN_TILES - 1);
-            if (end > k + 1 && !drawing.may_reach(runs[run])) {
-                k = end + 1;
-                continue;
+        for (int32_t g = first / LENS_GROUP_TILES; g <= last / LENS_GROUP_TILES; g++) {
+            const int32_t begin = g * LENS_GROUP_TILES;
+            uint32_t tiles = drawing.reached(groups[g]);
+            if (begin < first) tiles &= ~0u << (first - begin);
+            if (begin + LENS_GROUP_TILES > last) tiles &= (2u << (last - begin)) - 1;
+            if (tiles == 0) continue;
+            const uint32_t covered = drawing.covered(groups[g]);
+            for (; tiles != 0; tiles &= tiles - 1) {
+                const int32_t k = __builtin_ctz(tiles), left = (begin + k) * LENS_TILE_COLUMNS;
+                if (covered >> k & 1) {
+                    drawing.template draw<true>(top, bottom, left, left);
+                } else {
+                    drawing.template draw<false>(top, bottom, left, left);
+                }
             }
-            for (; k <= end; k++) drawing.draw_tile(tiles[k], top, bottom, k * LENS_TILE_COLUMNS);
         }
     }
 }

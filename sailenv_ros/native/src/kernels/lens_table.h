@@ -18,7 +18,7 @@ constexpr int32_t CUBE_FACES = 6;
 constexpr int32_t FACE_CELLS = 128;                           // of a face, along each side
 constexpr int32_t BLOCK_CELLS = 8;                            // of a block of them, along each side
 constexpr int32_t LENS_TILE_COLUMNS = 8, LENS_TILE_ROWS = 8;  // of samples
-constexpr int32_t LENS_RUN_TILES = 16;                        // side by side
+constexpr int32_t LENS_GROUP_TILES = 8;                       // of a group, side by side
 constexpr int32_t NO_FACE = -1;                               // where the lens sees nothing
 constexpr float UNKNOWN_BEND = 1e30f;
 
@@ -44,20 +44,20 @@ struct CubeFace {
     SampleBox all;            // samples of the face; none where the face is not used
 };
 
-// A tile's samples: which faces they lie on, and the places' bounds if that is one.
-struct LensTile {
-    float low[2], high[2];
-    int32_t faces;  // a bit for each
+// A group of tiles: which faces their samples lie on, and the places' bounds if that is one.
+struct LensTiles {
+    float low_x[LENS_GROUP_TILES], low_y[LENS_GROUP_TILES];
+    float high_x[LENS_GROUP_TILES], high_y[LENS_GROUP_TILES];
+    int32_t faces[LENS_GROUP_TILES];  // a bit for each
 };
 
 struct LensTable {
-    const float *x, *y;     // (rows, stride): NaN where the lens sees nothing, and beyond the row
-    const uint8_t* face;    // (rows, stride)
-    const float* steps;     // (4, H, step_stride), from pixel to pixel; see LensSteps
-    const LensTile* tiles;  // (tile rows, tile_columns)
-    const LensTile* tile_runs;  // (tile rows, run_columns): of LENS_RUN_TILES tiles
-    const CubeFace* faces;      // (CUBE_FACES,)
-    int64_t stride, tile_columns, run_columns;
+    const float *x, *y;      // (rows, stride): NaN where the lens sees nothing, and beyond the row
+    const uint8_t* face;     // (rows, stride)
+    const float* steps;      // (4, H, step_stride), from pixel to pixel; see LensSteps
+    const LensTiles* tiles;  // (tile rows, tile_groups)
+    const CubeFace* faces;   // (CUBE_FACES,)
+    int64_t stride, tile_groups;
     int64_t rows, columns;  // samples
     int64_t step_stride, step_rows;
     int64_t several;  // 1: samples lie on several faces

@@ -53,6 +53,6 @@ SAILENV_KERNEL(structure_sizes)(int64_t* sizes) {
     sizes[5] = sizeof(sailenv::LayerSum);
     sizes[6] = sizeof(sailenv::LensTable);
     sizes[7] = sizeof(sailenv::CubeFace);
-    sizes[8] = sizeof(sailenv::LensTile);
+    sizes[8] = sizeof(sailenv::LensTiles);
     return sailenv::STATUS_OK;
 }

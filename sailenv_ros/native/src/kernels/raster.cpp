@@ -70,15 +70,16 @@ FaceBounds bounds_within(const Projection& p, int32_t number) {
     bool all = false, none = true;
     for (int32_t y = p.y0 / LENS_TILE_ROWS; y <= p.y1 / LENS_TILE_ROWS; y++) {
         for (int32_t x = p.x0 / LENS_TILE_COLUMNS; x <= p.x1 / LENS_TILE_COLUMNS; x++) {
-            const LensTile& tile = lens.tiles[y * lens.tile_columns + x];
-            if (!(tile.faces >> number & 1)) continue;
+            const LensTiles& group = lens.tiles[y * lens.tile_groups + x / LENS_GROUP_TILES];
+            const int32_t k = x % LENS_GROUP_TILES;
+            if (!(group.faces[k] >> number & 1)) continue;
             none = false;
             // Of several faces a tile has no bounds.
-            all |= tile.faces != 1 << number;
-            for (int axis = 0; axis < 2; axis++) {
-                found.low[axis] = std::min<double>(found.low[axis], tile.low[axis]);
-                found.high[axis] = std::max<double>(found.high[axis], tile.high[axis]);
-            }
+            all |= group.faces[k] != 1 << number;
+            found.low[0] = std::min<double>(found.low[0], group.low_x[k]);
+            found.low[1] = std::min<double>(found.low[1], group.low_y[k]);
+            found.high[0] = std::max<double>(found.high[0], group.high_x[k]);
+            found.high[1] = std::max<double>(found.high[1], group.high_y[k]);
         }
     }
     if (none) return {{1e9, 1e9}, {1e9, 1e9}};
@@ -257,14 +258,24 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
     }
 }
 
-// The same through a lens that bends lines.
-void set_lens_bounds(ClusterRows& r, int32_t count, const Projection& p, const CubeFace& face) {
+// Whether a triangle shows its front, by the determinant of `set_edges_up` to the bit.
+bool shows_front(const float (&corners)[3][3]) {
+    const double ax = corners[0][0], ay = corners[0][1], az = corners[0][2];
+    const double bx = corners[1][0], by = corners[1][1], bz = corners[1][2];
+    const double cx = corners[2][0], cy = corners[2][1], cz = corners[2][2];
+    return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx) < 0.0;
+}
+
+// The same through a lens that bends lines, of triangles of which a side that is drawn is seen.
+void set_lens_bounds(ClusterRows& r, int32_t count, const Projection& p, const CubeFace& face,
+                     bool front, bool back) {
     for (int32_t k = 0; k < count; k++) {
         const CornerPlace* const places[3] = {r.place[0][k], r.place[1][k], r.place[2][k]};
         float corners[3][3];
         for (int j = 0; j < 9; j++) corners[j / 3][j % 3] = r.corner[j][k];
         SampleBox reach = {1, 1, 0, 0};
-        if (!reach_through_lens(face, places, corners, reach)) reach = {1, 1, 0, 0};
+        const bool drawn = front == back ? front : shows_front(corners) == front;
+        if (!drawn || !reach_through_lens(face, places, corners, reach)) reach = {1, 1, 0, 0};
         r.x0[k] = static_cast<float>(std::max<int32_t>(reach.x0, p.x0));
         r.x1[k] = static_cast<float>(std::min<int32_t>(reach.x1, p.x1));
         r.y0[k] = static_cast<float>(std::max<int32_t>(reach.y0, p.y0));
@@ -315,10 +326,13 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
             r.vertex[j][k] = static_cast<int32_t>(vertices[3 * k + j]);
         }
     }
+    const bool two_sided = !PERSPECTIVE || (part.flags & PART_DOUBLE_SIDED);
+    const bool front = seen.facing != FACING_BACK;
+    const bool back = seen.facing == FACING_BACK || (seen.facing == FACING_BOTH && two_sided);
     if (p.table != nullptr) {
         const CornerPlace* places = set.places.data() + corners_at;
         for (int32_t k = 0; k < 3 * count; k++) r.place[k % 3][k / 3] = places + corners[k];
-        set_lens_bounds(r, count, p, p.table->faces[seen.face]);
+        set_lens_bounds(r, count, p, p.table->faces[seen.face], front, back);
     } else {
         pad(r, count);
         set_bounds<PERSPECTIVE>(r, (count + 7) & ~7, p);
@@ -326,9 +340,6 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
     const int32_t reaching = keep_reaching(r, count);
     pad(r, reaching);
     set_edges_up<PERSPECTIVE>(r, (reaching + 3) & ~3, p);
-    const bool two_sided = !PERSPECTIVE || (part.flags & PART_DOUBLE_SIDED);
-    const bool front = seen.facing != FACING_BACK;
-    const bool back = seen.facing == FACING_BACK || (seen.facing == FACING_BOTH && two_sided);
     int64_t made = 0;
     for (int32_t k = 0; k < reaching; k++) {
         const bool faces = r.back[k] == 0 ? front : r.back[k] == 1 && back;

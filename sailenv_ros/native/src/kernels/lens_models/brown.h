@@ -73,8 +73,9 @@ inline bool undistort(const double* k, double most, const double* place, double*
         value = t * factor;
         slope = factor + 2.0 * r2 * change;
     };
-    const bool reached = increasing_root(goal, most, radial, r);
     const bool all = is_radial(k);
+    // Where more follows, a guess.
+    const bool reached = increasing_root(goal, most, radial, r, all ? 0.0 : 1e-3);
     if (!reached) {
         // The rest of the law may still bring the place within.
         if (all || !(goal < 1e150)) return false;

@@ -54,9 +54,10 @@ inline bool within_limit(const LensLaw& law, double r, double z) {
 
 // The argument from 0 to `most` where an increasing function reaches `goal`: Newton's steps, and
 // halves where they leave the interval or, beside a pole, go nowhere. `function(t, value, slope)`;
-// false beyond `most`.
+// false beyond `most`. `enough` is an error of the value, as a share of 1 + goal, that ends it.
 template <class Function>
-inline bool increasing_root(double goal, double most, const Function& function, double& t) {
+inline bool increasing_root(double goal, double most, const Function& function, double& t,
+                            double enough = 0.0) {
     double low = 0.0, high = most, value, slope;
     function(most, value, slope);
     if (!(goal <= value)) return false;
@@ -64,6 +65,7 @@ inline bool increasing_root(double goal, double most, const Function& function, 
     for (int step = 0; step < 200; step++) {
         function(t, value, slope);
         const double error = value - goal;
+        if (std::fabs(error) < enough * (1.0 + goal)) return true;
         (error > 0.0 ? high : low) = t;
         double next = t - error / slope;
         const bool is_near = std::fabs(error) <= 1e-6 * (1.0 + goal);

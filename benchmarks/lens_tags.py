@@ -1,0 +1,107 @@
+"""Finds AprilTags in the pictures of `lens_views.py`, and tells how far off their poses are.
+
+    python benchmarks/lens_tags.py FOLDER
+
+Needs opencv-contrib-python 4.x and pupil-apriltags, and nothing of this project. The detector knows
+pin-holes alone: OpenCV rectifies the pictures by K and D of the lens, into a camera that looks at
+the board. A row for each model: tags, errors of the direction of their axes [deg] and of their
+places [% of the distance]: median, 95 %, greatest.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import cv2
+import numpy as np
+from lens_judges import linear_light
+from pupil_apriltags import Detector
+
+SIDE_M, MODULES, TAG_MODULES, TAGS = 1.04, 32, 8, 3
+MODULE_M = SIDE_M / MODULES
+SIZE_PX, FOCAL_PX = 1600, 900.0
+LEAST_SIDE_PX = 60.0
+"""Smaller tags are left out: their corners are known to a tenth of a pixel at best."""
+
+Array: TypeAlias = Any
+CV: Any = cv2
+
+
+def turned_to(pose: Array) -> Array:
+    """Return the (3, 3) rotation into a camera that looks at the board's middle."""
+    ahead = pose[:3, 3] / np.linalg.norm(pose[:3, 3])
+    right = np.cross([0.0, 1.0, 0.0] if abs(ahead[1]) < 0.9 else [1.0, 0.0, 0.0], ahead)
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(ahead, right), ahead])
+
+
+def rectified(light: Array, lens: dict[str, Any], turn: Array, inner: Array) -> Array:
+    """Return a picture as a pin-hole of matrix `inner` sees it, that is turned."""
+    K, D, size = np.array(lens["K"]), np.array(lens["D"]), (SIZE_PX, SIZE_PX)
+    if lens["model"] == "equidistant":
+        maps = CV.fisheye.initUndistortRectifyMap(K, D, turn, inner, size, CV.CV_32FC1)
+    elif lens["model"] == "mei":
+        maps = CV.omnidir.initUndistortRectifyMap(
+            K, D[1:], D[:1], turn, inner, size, CV.CV_32FC1, CV.omnidir.RECTIFY_PERSPECTIVE
+        )
+    else:
+        maps = CV.initUndistortRectifyMap(K, D, turn, inner, size, CV.CV_32FC1)
+    return CV.remap(light, *maps, CV.INTER_CUBIC)
+
+
+def tag_in_board(number: int) -> Array:
+    """Return where a tag's middle lies on the board [m]; x right, y down, from the middle."""
+    row, column = divmod(number, TAGS)
+    places = [MODULE_M * (2 + (TAG_MODULES + 2) * k + 0.5 * TAG_MODULES) for k in (column, row)]
+    return np.array([*places, 0.0]) - (0.5 * SIDE_M, 0.5 * SIDE_M, 0.0)
+
+
+def main() -> None:
+    """Judge all models that have pictures."""
+    detector = Detector("tag36h11", quad_decimate=1.0, refine_edges=1, decode_sharpening=0.0)
+    middle = 0.5 * (SIZE_PX - 1)
+    inner = np.array([[FOCAL_PX, 0, middle], [0, FOCAL_PX, middle], [0, 0, 1.0]])
+    print("|model|tags|axes [deg]|places [%]|\n" + 4 * "|---" + "|")
+    for folder in sorted((Path(sys.argv[1]) / "tags").iterdir()):
+        truth = json.loads((folder / "truth.json").read_text())
+        lens, poses = truth["lens"], np.array(truth["poses"])
+        angles, places = [], []
+        for path, pose in zip(sorted(folder.glob("*.png")), poses, strict=True):
+            light = linear_light(CV.imread(str(path), CV.IMREAD_GRAYSCALE))
+            turn, used = np.eye(3), np.array(lens["K"])
+            if lens["model"] != "pinhole":
+                turn, used = turned_to(pose), inner
+                light = rectified(light, lens, turn, inner)
+            picture = np.clip(np.rint(light), 0, 255).astype(np.uint8)
+            # The detector counts from the picture's corner, half a pixel from OpenCV.
+            camera = used[0, 0], used[1, 1], used[0, 2] + 0.5, used[1, 2] + 0.5
+            found = detector.detect(picture, True, camera, TAG_MODULES * MODULE_M)
+            for tag in found:
+                sides = np.linalg.norm(tag.corners - np.roll(tag.corners, 1, axis=0), axis=1)
+                if tag.tag_id >= TAGS * TAGS or sides.min() < LEAST_SIDE_PX:
+                    continue
+                true = turn @ pose[:3, :3]
+                place = turn @ (pose[:3, :3] @ tag_in_board(tag.tag_id) + pose[:3, 3])
+                # Its axes may be turned by quarters within the tag: only the normal is compared,
+                # and the turn within the plane to the nearest quarter.
+                off = true.T @ tag.pose_R
+                quarter = round(math.atan2(off[1, 0], off[0, 0]) / (0.5 * math.pi))
+                c, s = round(math.cos(quarter * math.pi / 2)), round(math.sin(quarter * math.pi / 2))
+                off = off @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]])
+                angle = math.degrees(math.acos(min(1.0, 0.5 * (np.trace(off) - 1.0))))
+                angles.append(angle)
+                distance = np.linalg.norm(place)
+                places.append(100.0 * np.linalg.norm(tag.pose_t.ravel() - place) / distance)
+        shown = [
+            ", ".join(f"{n:.3f}" for n in np.percentile(each, [50, 95, 100]))
+            for each in (angles, places)
+        ]
+        print(f"|{folder.name}|{len(angles)}|{shown[0]}|{shown[1]}|", flush=True)
+
+
+if __name__ == "__main__":
+    main()
