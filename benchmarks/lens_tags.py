@@ -50,7 +50,7 @@ def rectified(light: Array, lens: dict[str, Any], turn: Array, inner: Array) -> 
         )
     else:
         maps = CV.initUndistortRectifyMap(K, D, turn, inner, size, CV.CV_32FC1)
-    return CV.remap(light, *maps, CV.INTER_CUBIC)
+    return CV.remap(light, *maps, CV.INTER_LANCZOS4)
 
 
 def tag_in_board(number: int) -> Array:

@@ -90,6 +90,9 @@ BOARD_IN_WORLD = np.array(
 )
 """(4, 4): the board's middle; x to the right as it is read, y down, z away from the reader."""
 
+BLUR_TEXELS = 2.5
+"""Standard deviation of the boards' edges: like a lens's, so that pixels can tell where they lie."""
+
 Look = Callable[[Pose], NDArray[np.uint8]]
 """From the camera's pose to its picture, RGB."""
 
@@ -99,7 +102,7 @@ def charuco_texture() -> NDArray[np.uint8]:
     dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_5X5_250)
     square = SIDE_M / SQUARES
     board = cv2.aruco.CharucoBoard((SQUARES, SQUARES), square, 0.5 * square, dictionary)
-    return np.asarray(board.generateImage((TEXELS, TEXELS)), np.uint8)
+    return blurred(np.asarray(board.generateImage((TEXELS, TEXELS)), np.uint8))
 
 
 def tags_texture() -> NDArray[np.uint8]:
@@ -112,7 +115,14 @@ def tags_texture() -> NDArray[np.uint8]:
         top, left = (MODULE_TEXELS * (2 + (TAG_MODULES + 2) * k) for k in (row, column))
         tag = cv2.aruco.generateImageMarker(dictionary, number, size)
         texture[top : top + size, left : left + size] = tag
-    return texture
+    return blurred(texture)
+
+
+def blurred(texture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return a pattern of black and white in sRGB, whose light passes softly from one to other."""
+    light = cv2.GaussianBlur(texture / 255.0, (0, 0), BLUR_TEXELS, borderType=cv2.BORDER_REPLICATE)
+    encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    return np.rint(255.0 * encoded).astype(np.uint8)
 
 
 def board_model(texture: NDArray[np.uint8]) -> bytes:
@@ -177,7 +187,7 @@ def views(lens: CameraIntrinsics, seed: int) -> list[NDArray[np.float64]]:
 def in_process(scene: Path, texture: NDArray[np.uint8]) -> Iterator[Callable[[str], Look]]:
     """Yield what makes cameras that look at a board, within this process."""
     with Simulation(scene, mode="lockstep", light="plain") as simulation:
-        name = simulation.upload_model(board_model(texture), "board.zip", height_m=SIDE_M)
+        name = simulation.upload_model.within(600.0)(board_model(texture), "board.zip", height_m=SIDE_M)
         simulation.spawn_object(name, position=BOARD_AT, remove_dynamics=True)
 
         def camera(model: str) -> Look:
