@@ -90,7 +90,10 @@ def main() -> None:
                 # and the turn within the plane to the nearest quarter.
                 off = true.T @ tag.pose_R
                 quarter = round(math.atan2(off[1, 0], off[0, 0]) / (0.5 * math.pi))
-                c, s = round(math.cos(quarter * math.pi / 2)), round(math.sin(quarter * math.pi / 2))
+                c, s = (
+                    round(math.cos(quarter * math.pi / 2)),
+                    round(math.sin(quarter * math.pi / 2)),
+                )
                 off = off @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]])
                 angle = math.degrees(math.acos(min(1.0, 0.5 * (np.trace(off) - 1.0))))
                 angles.append(angle)

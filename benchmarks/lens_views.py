@@ -1,6 +1,6 @@
 """Pictures of boards through lenses of every model, for judges: `lens_judges.py`, `lens_tags.py`.
 
-    python benchmarks/lens_views.py FOLDER [--models NAME ...] [--seed N] [--topics]
+    python benchmarks/lens_views.py FOLDER [--models NAME ...] [--boards NAME ...] [--topics]
 
 Thirty pictures a model of a ChArUco board in a room, and as many of a board of AprilTags; both are
 models that are drawn here and uploaded. Views follow a rule: the board's middle lies in each of
@@ -31,7 +31,8 @@ from sailenv_ros.types.picture_settings import PictureSettings
 
 ACROSS, DOWN = 6, 5
 SIDE_M, TEXELS = 1.04, 2048
-SQUARES = 8
+SQUARES, WIDE_SQUARES = 12, 8
+"""Of the ChArUco board's sides; fewer for lenses that make things small."""
 MODULE_TEXELS, TAG_MODULES, TAGS = 64, 8, 3
 
 LENSES: dict[str, dict[str, Any]] = {
@@ -91,18 +92,19 @@ BOARD_IN_WORLD = np.array(
 """(4, 4): the board's middle; x to the right as it is read, y down, z away from the reader."""
 
 BLUR_TEXELS = 2.5
-"""Standard deviation of the boards' edges: like a lens's, so that pixels can tell where they lie."""
+"""Standard deviation of the boards' edges: pixels can tell where soft ones lie."""
 
 Look = Callable[[Pose], NDArray[np.uint8]]
 """From the camera's pose to its picture, RGB."""
 
 
-def charuco_texture() -> NDArray[np.uint8]:
-    """Return a board of 8 x 8 squares, whose corners lie on the borders of texels."""
+def charuco_texture(squares: int) -> NDArray[np.uint8]:
+    """Return a board of so many squares along each side."""
     dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_5X5_250)
-    square = SIDE_M / SQUARES
-    board = cv2.aruco.CharucoBoard((SQUARES, SQUARES), square, 0.5 * square, dictionary)
-    return blurred(np.asarray(board.generateImage((TEXELS, TEXELS)), np.uint8))
+    square = SIDE_M / squares
+    board = cv2.aruco.CharucoBoard((squares, squares), square, 0.5 * square, dictionary)
+    size = 3 * TEXELS  # a whole number for each square
+    return blurred(np.asarray(board.generateImage((size, size)), np.uint8))
 
 
 def tags_texture() -> NDArray[np.uint8]:
@@ -120,7 +122,9 @@ def tags_texture() -> NDArray[np.uint8]:
 
 def blurred(texture: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Return a pattern of black and white in sRGB, whose light passes softly from one to other."""
-    light = cv2.GaussianBlur(texture / 255.0, (0, 0), BLUR_TEXELS, borderType=cv2.BORDER_REPLICATE)
+    blur = BLUR_TEXELS * len(texture) / TEXELS
+    light = cv2.GaussianBlur(texture / 255.0, (0, 0), blur, borderType=cv2.BORDER_REPLICATE)
+    light = cv2.resize(light, (TEXELS, TEXELS), interpolation=cv2.INTER_AREA)
     encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     return np.rint(255.0 * encoded).astype(np.uint8)
 
@@ -158,6 +162,9 @@ def views(lens: CameraIntrinsics, seed: int) -> list[NDArray[np.float64]]:
     rows, columns = np.nonzero(lens.valid_pixels())
     left, top = columns.min(), rows.min()
     wide, high = np.ptp(columns) / ACROSS, np.ptp(rows) / DOWN
+    # Nearer through a lens that makes things small.
+    per_rad = 1e3 * (lens.project([1e-3, 0.0, 1.0])[0] - lens.cx)
+    near = min(1.0, per_rad / 700.0)
     found: list[NDArray[np.float64]] = []
     while len(found) < ACROSS * DOWN:
         down, across = divmod(len(found), ACROSS)
@@ -168,7 +175,7 @@ def views(lens: CameraIntrinsics, seed: int) -> list[NDArray[np.float64]]:
         while np.isnan(ray[0]):
             place += 0.02 * (np.array([lens.cx, lens.cy]) - place)
             ray = lens.unit_rays_through(place)
-        distance = random.uniform(0.55, 1.1)
+        distance = near * random.uniform(0.55, 1.1)
         # The board's z axis leads away from us.
         away = turn(random.normal(size=3), math.radians(random.uniform(10, 40))) @ ray
         if away @ ray < 0.6:
@@ -187,7 +194,9 @@ def views(lens: CameraIntrinsics, seed: int) -> list[NDArray[np.float64]]:
 def in_process(scene: Path, texture: NDArray[np.uint8]) -> Iterator[Callable[[str], Look]]:
     """Yield what makes cameras that look at a board, within this process."""
     with Simulation(scene, mode="lockstep", light="plain") as simulation:
-        name = simulation.upload_model.within(600.0)(board_model(texture), "board.zip", height_m=SIDE_M)
+        name = simulation.upload_model.within(600.0)(
+            board_model(texture), "board.zip", height_m=SIDE_M
+        )
         simulation.spawn_object(name, position=BOARD_AT, remove_dynamics=True)
 
         def camera(model: str) -> Look:
@@ -284,16 +293,25 @@ def main() -> None:
     parser.add_argument("output", type=Path)
     parser.add_argument("--models", nargs="+", default=list(LENSES), choices=list(LENSES))
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--boards", nargs="+", default=["charuco", "tags"])
     parser.add_argument("--topics", action="store_true")
     args = parser.parse_args()
     args.output.mkdir(parents=True, exist_ok=True)
     scene = args.output.resolve() / "scene.yaml"
     scene.write_text(SCENE)
-    boards = {"charuco": charuco_texture(), "tags": tags_texture()}
+    wide = [model for model in args.models if "max_angle_deg" in LENSES[model]]
+    narrow = [model for model in args.models if model not in wide]
+    boards = [
+        ("charuco", charuco_texture(SQUARES), narrow),
+        ("charuco", charuco_texture(WIDE_SQUARES), wide),
+        ("tags", tags_texture(), args.models),
+    ]
     open_room = through_topics if args.topics else in_process
-    for board, texture in boards.items():
+    for board, texture, models in boards:
+        if not models or board not in args.boards:
+            continue
         with open_room(scene, texture) as camera:
-            for model in args.models:
+            for model in models:
                 write_views(args.output / board / model, lens_of(model), camera(model), args.seed)
                 print(board, model)
 

@@ -23,12 +23,15 @@ def frame_record(number: int, frame: Frame) -> dict[str, Any]:
     """Return what belongs to a frame beside its views, for a table of frames.
 
     ``randomised`` is the record of what was drawn at random for it, which makes it again; it is
-    missing where nothing was. So are the model of the lens and its coefficients D of a pin-hole.
+    missing where nothing was. So are the model of the lens and its coefficients D of a pin-hole,
+    and the angle from the axis at which the picture ends where no image circle does.
     """
     lens = frame.camera.intrinsics
     distortion: dict[str, Any] = {}
     if not lens.is_pinhole:
         distortion = {"distortion_model": lens.distortion_model, "D": lens.D.tolist()}
+        if lens.max_angle_deg:
+            distortion["max_angle_deg"] = lens.max_angle_deg
     return {
         **({} if frame.randomised is None else {"randomised": dict(frame.randomised)}),
         "number": number,

@@ -52,6 +52,7 @@ class ParquetExport(DatasetFormat):
             "sequence": sample.sequence,
             "K": np.ravel(told["K"]).tolist(),
             "world_from_camera": np.ravel(told["world_from_camera"]).tolist(),
+            **{key: told.get(key) for key in ("distortion_model", "D", "max_angle_deg")},
             "randomised": json.dumps(told["randomised"]) if "randomised" in told else None,
             "objects": [object_record(found.table, index) for index in range(len(found.table))],
             **{view: _cell(values) for view, values in frame.views.items()},
@@ -101,6 +102,7 @@ def _schema(pa: Any, views: Mapping[str, NDArray[Any]]) -> Any:
     columns = {
         "number": pa.int64(), "frame": pa.int64(), "sequence": pa.string(), "scene": pa.string(),
         "stamp_ns": pa.int64(), "dt_ns": pa.int64(), "K": numbers, "world_from_camera": numbers,
+        "distortion_model": pa.string(), "D": numbers, "max_angle_deg": pa.float64(),
         "randomised": pa.string(),
         "objects": pa.list_(pa.struct(item)),
     }  # fmt: skip

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import itertools
+import json
 import pickle
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 from sailenv_ros.dataset.formats import export
@@ -177,18 +180,28 @@ def test_movi_files_keep_the_lens(lens: CameraIntrinsics, tmp_path: Path) -> Non
             assert arrays["lens"].tolist() == [96.0, 64.0, 60.0, 0.05, 100.0]
 
 
-def test_a_recording_keeps_the_lens(tmp_path: Path) -> None:
-    """With focal lengths of its own."""
-    lens = LENSES[2]
+@pytest.mark.parametrize("lens", [LENSES[2], replace(LENSES[4], width=96, height=64)])
+def test_a_recording_and_its_exports_keep_the_lens(lens: CameraIntrinsics, tmp_path: Path) -> None:
+    """Focal lengths, model, coefficients, image circle."""
     spec = AgentSpec(name="eye", intrinsics=lens, rate_hz=10.0)
     with (
         Simulation("optical", mode="lockstep", agent=spec) as simulation,
         RecordingWriter(tmp_path / "bag") as writer,
     ):
-        record_lockstep(simulation, writer, frames=1, agents=["eye"], views=("depth",))
+        record_lockstep(simulation, writer, frames=1, agents=["eye"], views=VIEWS)
     with RecordingReader(tmp_path / "bag") as reader:
         (frame,) = RecordedFrames(reader, "eye")
     assert frame.camera.intrinsics == lens
+    export(tmp_path / "bag", tmp_path / "out", ["png", "coco", "parquet"], agent="eye")
+    (record,) = json.loads((tmp_path / "out/png/frames.json").read_text())
+    (image,) = json.loads((tmp_path / "out/coco/annotations.json").read_text())["images"]
+    (row,) = pq.read_table(tmp_path / "out/parquet/data").to_pylist()
+    for told in (record, image, row):
+        assert np.reshape(told["K"], (3, 3)).tolist() == lens.K.tolist()
+        if not lens.is_pinhole:
+            assert told["distortion_model"] == lens.distortion_model
+            assert told["D"] == list(lens.distortion)
+            assert told["max_angle_deg"] == lens.max_angle_deg
 
 
 def test_tapvid_points_are_tracks_in_raster_coordinates(
