@@ -156,15 +156,17 @@ def turn(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
     return np.asarray(matrix, np.float64)
 
 
-def views(lens: CameraIntrinsics, seed: int) -> list[NDArray[np.float64]]:
-    """Return (4, 4) poses of the board in the optical frame, its z axis away from the camera."""
+def views(lens: CameraIntrinsics, seed: int, large: bool) -> list[NDArray[np.float64]]:
+    """Return (4, 4) poses of the board in the optical frame, its z axis away from the camera.
+
+    With `large` boards are nearer to lenses that make things small.
+    """
     random = np.random.default_rng(seed)
     rows, columns = np.nonzero(lens.valid_pixels())
     left, top = columns.min(), rows.min()
     wide, high = np.ptp(columns) / ACROSS, np.ptp(rows) / DOWN
-    # Nearer through a lens that makes things small.
     per_rad = 1e3 * (lens.project([1e-3, 0.0, 1.0])[0] - lens.cx)
-    near = min(1.0, per_rad / 700.0)
+    near = min(1.0, per_rad / 700.0) if large else 1.0
     found: list[NDArray[np.float64]] = []
     while len(found) < ACROSS * DOWN:
         down, across = divmod(len(found), ACROSS)
@@ -228,9 +230,7 @@ def through_topics(scene: Path, texture: NDArray[np.uint8]) -> Iterator[Callable
 
     def camera(model: str) -> Look:
         lens = lens_of(model)
-        agent = stack.enter_context(
-            Agent(intrinsics=lens, picture=PICTURE, agent=model, simulator=simulator)
-        )
+        agent = stack.enter_context(Agent(intrinsics=lens, picture=PICTURE, simulator=simulator))
         name = agent.upload_model(board_model(texture), "board.zip", height_m=SIDE_M)
         agent.spawn_object(name, position=BOARD_AT, remove_dynamics=True)
         pictures: list[Any] = []
@@ -269,10 +269,10 @@ def _stamp_ns(message: Any) -> int:
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
-def write_views(folder: Path, lens: CameraIntrinsics, look: Look, seed: int) -> None:
+def write_views(folder: Path, lens: CameraIntrinsics, look: Look, seed: int, large: bool) -> None:
     """Write the pictures of one board through one lens, and what is true of them."""
     folder.mkdir(parents=True, exist_ok=True)
-    poses = views(lens, seed)
+    poses = views(lens, seed, large)
     for number, board_pose in enumerate(poses):
         # The board stays; the camera goes to where it is seen as drawn.
         world = BOARD_IN_WORLD @ np.linalg.inv(board_pose) @ BODY_FROM_OPTICAL.T
@@ -312,7 +312,8 @@ def main() -> None:
             continue
         with open_room(scene, texture) as camera:
             for model in models:
-                write_views(args.output / board / model, lens_of(model), camera(model), args.seed)
+                folder, large = args.output / board / model, board == "tags"
+                write_views(folder, lens_of(model), camera(model), args.seed, large)
                 print(board, model)
 
 
