@@ -230,13 +230,15 @@ def through_topics(scene: Path, texture: NDArray[np.uint8]) -> Iterator[Callable
 
     def camera(model: str) -> Look:
         lens = lens_of(model)
-        agent = stack.enter_context(Agent(intrinsics=lens, picture=PICTURE, simulator=simulator))
+        agent = stack.enter_context(
+            Agent(intrinsics=lens, picture=PICTURE, name=model, simulator=simulator)
+        )
         name = agent.upload_model(board_model(texture), "board.zip", height_m=SIDE_M)
         agent.spawn_object(name, position=BOARD_AT, remove_dynamics=True)
         pictures: list[Any] = []
         lenses: list[Any] = []
         for kind, view, kept in ((Image, "rgb", pictures), (CameraInfo, "camera_info", lenses)):
-            topic = f"/sailenv/{agent.name}/{view}"
+            topic = f"/sailenv/{model}/{view}"
             node.create_subscription(kind, topic, kept.append, qos_profile_sensor_data)
 
         def look(pose: Pose) -> NDArray[np.uint8]:
@@ -260,7 +262,6 @@ def through_topics(scene: Path, texture: NDArray[np.uint8]) -> Iterator[Callable
 
     with ExitStack() as stack:
         yield camera
-    node.destroy_node()
     rclpy.shutdown()
 
 

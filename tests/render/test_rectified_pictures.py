@@ -17,7 +17,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.picture_settings import PictureSettings
 from tests.support.tiny_scenes import Thing, model_of, snapshot_of, wall_mesh
 
-SIZE = {"width": 640, "height": 480, "cx_offset_px": 4.3, "cy_offset_px": -3.1}
+SIZE: dict[str, Any] = {"width": 640, "height": 480, "cx_offset_px": 4.3, "cy_offset_px": -3.1}
 PICTURE = PictureSettings(smooth_edges=False, tone_curve="linear")
 SQUARES, SQUARE_TEXELS = 8, 64
 INNER = SQUARES - 1, SQUARES - 1
@@ -91,7 +91,7 @@ def test_a_rectified_picture_is_that_of_a_pin_hole(name: str) -> None:
         for each in (lens, flat)
     )
     renderer.close()
-    rectified = cv2.remap(bent, *maps, cv2.INTER_LANCZOS4)
+    rectified = np.asarray(cv2.remap(bent, *maps, cv2.INTER_LANCZOS4), np.uint8)
     off = corners_of(rectified) - corners_of(straight)
     assert np.sqrt((off**2).sum(axis=1)).max() <= 0.05
     whole = cv2.remap(np.full(bent.shape[:2], 255, np.uint8), *maps, cv2.INTER_LINEAR) == 255
