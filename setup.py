@@ -72,6 +72,8 @@ BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
 EVAL = ["matplotlib>=3.8", "onnxruntime>=1.17"]
 # What some formats of data sets and remote places for them need, and the engine of many machines.
 DATASET = ["fsspec>=2024.2", "pyarrow>=15"]
+# What environments for agents need; several agents in one room need pettingzoo, too.
+GYM = ["gymnasium>=1.0", "pettingzoo>=1.25"]
 NOTEBOOK = ["ipykernel>=6.29", "jupyterlab>=4.2"]
 RAY = ["fsspec>=2024.2", "pyarrow>=15", "ray>=2.40"]
 DEV = [
@@ -96,10 +98,12 @@ DEV = [
     "flask>=3.0",
     "flask-cors>=5.0",
     "fsspec>=2024.2",
+    "gymnasium>=1.0",
     "moto[s3]>=5",
     "mujoco>=3.3",
     "mypy",
     "onnxruntime>=1.17",
+    "pettingzoo>=1.25",
     # Drives Debian's Chromium, for the tests of the web viewer.
     "playwright>=1.40",
     "pyarrow>=15",
@@ -218,9 +222,10 @@ setup(
         "dataset": DATASET,
         "ray": RAY,
         "eval": EVAL,
+        "gym": GYM,
         "notebook": NOTEBOOK,
         # Everything but ROS, which may be there already, and the tools for developers.
-        "all": sorted({*ASSETS, *BAKE, *BENCH, *DATASET, *EVAL, *IMPORT}),
+        "all": sorted({*ASSETS, *BAKE, *BENCH, *DATASET, *EVAL, *GYM, *IMPORT}),
         "dev": DEV,
     },
     entry_points={

@@ -16,6 +16,8 @@ __all__ = ["need"]
 _EXTRA_OF = {
     "OpenEXR": "assets",
     "fsspec": "dataset",
+    "gymnasium": "gym",
+    "pettingzoo": "gym",
     "pyarrow": "dataset",
     "ray": "ray",
     "coacd": "assets",

@@ -156,6 +156,24 @@ class FreeSpace:
         distances, _ = self._graph.from_cell(self._free_cell("start", start))
         return distances * self.resolution_m
 
+    def distances_to_m(self, goals: NDArray[np.bool_]) -> NDArray[np.float64]:
+        """Return (H, W) how far each cell is from the nearest goal, as `distances_m` has it [m].
+
+        Parameters
+        ----------
+        goals : (H, W) bool
+            Those that are not free count for nothing.
+
+        Raises
+        ------
+        InvalidRequest
+            If no goal is in a free cell.
+        """
+        free = np.asarray(goals, bool) & self.free
+        if not free.any():
+            raise InvalidRequest("goals", "none", "at least one in a free cell")
+        return self._graph.to_cells(free) * self.resolution_m
+
     def path(self, start: ArrayLike, goal: ArrayLike) -> NDArray[np.float64]:
         """Return the shortest path from one place to another.
 

@@ -61,6 +61,14 @@ class GridGraph:
             cells.append(at)
         return [divmod(cell, width) for cell in reversed(cells)]
 
+    def to_cells(self, goals: Flags) -> NDArray[np.float64]:
+        """Return (H, W) distances in cells from each cell to the nearest of the goals (H, W)."""
+        from scipy.sparse.csgraph import dijkstra
+
+        numbers = np.flatnonzero(goals)
+        distances = dijkstra(self._graph, directed=False, indices=numbers, min_only=True)
+        return np.asarray(distances).reshape(self._shape)
+
     def _from_cell(self, start: Cell) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         """Return (H, W) distances in cells, and (H·W,) the cell before each on the path to it."""
         from scipy.sparse.csgraph import dijkstra

@@ -6,6 +6,7 @@ there already are used again: a scene that changes costs what has changed.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,7 +51,7 @@ class PartTable:
     meshes : MeshStore or None
     textures : TextureStore or None
         Shared with tables of scenes that are shown before and after, which must not be at the same
-        time; None for its own.
+        time unless the stores keep everything; None for its own.
 
     Attributes
     ----------
@@ -161,10 +162,18 @@ class PartTable:
         self.unlit, self._unlit_glass = table[~glass], table[glass]
         self.casters = table[~glass & casting]
         if trim:
-            self._meshes.trim(mesh for made in models.values() for mesh in made.meshes)
-            self._textures.trim(
-                part.material for made in models.values() for part in made.model.parts
-            )
+            self._meshes.trim(self.shown_meshes())
+            self._textures.trim(self.shown_materials())
+
+    def shown_meshes(self) -> Iterator[DrawnMesh]:
+        """Yield the meshes of all models that are shown."""
+        for made in self._models.values():
+            yield from made.meshes
+
+    def shown_materials(self) -> Iterator[Material]:
+        """Yield the materials of all models that are shown."""
+        for made in self._models.values():
+            yield from (part.material for part in made.model.parts)
 
     def at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
         """Return which instances have baked light: those that stand where they stood for it."""

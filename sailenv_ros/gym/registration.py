@@ -1,0 +1,30 @@
+"""Names of the environments for `gymnasium.make`, with their time limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import gymnasium
+
+__all__ = ["ENVIRONMENTS", "register_environments"]
+
+ENVIRONMENTS: Mapping[str, tuple[str, int]] = MappingProxyType(
+    {
+        "sailenv/Track-v0": ("track:TrackEnv", 300),
+        "sailenv/Search-v0": ("search:SearchEnv", 200),
+        "sailenv/PointNav-v0": ("point_nav:PointNavEnv", 200),
+    }
+)
+"""Module and class of each environment, and the steps after which an episode is cut off."""
+
+
+def register_environments() -> None:
+    """Make the environments known to Gymnasium; a second call does nothing."""
+    for name, (place, most_steps) in ENVIRONMENTS.items():
+        if name not in gymnasium.registry:
+            gymnasium.register(
+                name,
+                entry_point=f"sailenv_ros.gym.{place}",
+                max_episode_steps=most_steps,
+            )

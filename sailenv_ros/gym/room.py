@@ -1,0 +1,175 @@
+"""A room to act in: what is drawn, where one can stand, who draws it. Nothing in it changes.
+
+An environment's own objects are moved by exchanging their poses in a copy of the snapshot. So many
+environments share a room, and what one of them sees depends on no other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import closing
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.authoring.viewpoints.object_targets import boxes_of
+from sailenv_ros.errors import NoFreeSpace
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.simulation.finished_light import bake_missing
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.script.scenario import SceneOverlay
+from sailenv_ros.space.free_space import BodySize, FreeSpace
+from sailenv_ros.space.grid import map_free_space
+from sailenv_ros.space.outlines import solids_of
+from sailenv_ros.types.labels import UNLABELLED_CATEGORY
+from sailenv_ros.types.snapshot import WorldSnapshot
+
+__all__ = ["Room", "RoomOrder", "open_room"]
+
+STRUCTURE = frozenset({"wall", "floor", "ceiling", "window", "door", "curtain", "plane"})
+"""Categories of the parts of rooms: nobody searches for them."""
+
+
+@dataclass(frozen=True, slots=True)
+class RoomOrder:
+    """Description of a room that an environment wants; equal orders share one room.
+
+    Attributes
+    ----------
+    name : str
+        Of a scene.
+    body : BodySize
+        Who walks in it.
+    own : tuple of (name, asset, scale, colour)
+        Objects that the environment moves by itself: scale in the asset's lengths, colour as in a
+        scene file.
+    baked : bool
+        True for light that was baked, False for plain light.
+    threads : int
+        That draw.
+    """
+
+    name: str
+    body: BodySize
+    own: tuple[tuple[str, str, float, str], ...] = ()
+    baked: bool = False
+    threads: int = 1
+
+
+@dataclass(eq=False, kw_only=True)
+class Room:
+    """A room that was built.
+
+    Attributes
+    ----------
+    order : RoomOrder
+    snapshot : WorldSnapshot
+        Everything as it stands at the start; own objects wait far above.
+    space : FreeSpace
+        Where the body can stand; own objects are not in the way.
+    renderer : NativeRenderer
+    users : int
+        Environments that are in it.
+    """
+
+    order: RoomOrder
+    snapshot: WorldSnapshot
+    space: FreeSpace
+    renderer: NativeRenderer
+    users: int = 0
+
+    @property
+    def name(self) -> str:
+        """Name of its scene."""
+        return self.order.name
+
+    @cached_property
+    def boxes(self) -> NDArray[np.float64]:
+        """(N, 2, 3) lowest and highest corner of the box around each instance, in the world [m]."""
+        ends, poses = boxes_of(self.snapshot), self.snapshot.world_from_body
+        middles = np.append(ends.mean(axis=1), np.ones((len(ends), 1)), axis=1)
+        centres = np.einsum("nij,nj->ni", poses, middles)[:, :3]
+        halves = np.einsum("nij,nj->ni", np.abs(poses[:, :3, :3]), np.ptp(ends, axis=1) / 2.0)
+        return np.stack([centres - halves, centres + halves], axis=1)
+
+    @cached_property
+    def rows(self) -> Mapping[str, int]:
+        """Row of each instance in the snapshot, by its name."""
+        return {
+            drawn.instance.name: row for row, drawn in enumerate(self.snapshot.contents.instances)
+        }
+
+    @cached_property
+    def ids(self) -> NDArray[np.uint16]:
+        """(N,) uint16 instance id of each row."""
+        return self.snapshot.contents.instance_ids
+
+    @cached_property
+    def objects(self) -> Mapping[str, tuple[int, ...]]:
+        """Rows of the objects of each category, without parts of the room and own objects."""
+        own = {name for name, *_ in self.order.own}
+        found: dict[str, list[int]] = {}
+        for row, drawn in enumerate(self.snapshot.contents.instances):
+            one = drawn.instance
+            labelled = one.category_id not in (0, UNLABELLED_CATEGORY)
+            within = drawn.outside is None and bool(drawn.model.parts)
+            if labelled and within and one.category not in STRUCTURE and one.name not in own:
+                found.setdefault(one.category, []).append(row)
+        return {category: tuple(rows) for category, rows in sorted(found.items())}
+
+    def scene_at(self, time_ns: int, moved: Mapping[int, NDArray[np.float64]]) -> WorldSnapshot:
+        """Return the room at a time, some rows of it at other poses (4, 4)."""
+        poses = self.snapshot.world_from_body
+        if moved:
+            poses = poses.copy()
+            for row, pose in moved.items():
+                poses[row] = pose
+        return replace(self.snapshot, sim_time_ns=time_ns, world_from_body=poses)
+
+    def close(self) -> None:
+        """Free its renderer."""
+        self.renderer.close()
+
+
+def open_room(order: RoomOrder, library: SceneLibrary, renderer: NativeRenderer) -> Room:
+    """Build a room; errors as of `SceneLibrary.build`.
+
+    Raises
+    ------
+    NoFreeSpace
+        If the body has no place in it.
+    """
+    own: list[dict[str, Any]] = [
+        {
+            "name": name,
+            "asset": asset,
+            "scale": scale,
+            "colour": colour,
+            "gravity": False,
+            "position": [0.0, 0.0, 50.0 + 5.0 * number],
+        }
+        for number, (name, asset, scale, colour) in enumerate(order.own)
+    ]
+    with closing(library.build(order.name, more=SceneOverlay(own))) as world:
+        if order.baked:
+            bake_missing(world)
+        names = {entry["name"] for entry in own}
+        solids = [
+            solid
+            for body in world.bodies
+            if body.placement.name not in names
+            for solid in solids_of(
+                body.placement.asset.collision, body.placement.scale, body.world_from_body()
+            )
+        ]
+        space = map_free_space(solids, order.body)
+        snapshot = world.snapshot()
+    if not (space.regions == 1).any():
+        raise NoFreeSpace(
+            f"in {order.name} no place is free for a body of radius {order.body.radius_m:g} m and "
+            f"height {order.body.height_m:g} m; a smaller one may find one"
+        )
+    return Room(order=order, snapshot=snapshot, space=space, renderer=renderer)

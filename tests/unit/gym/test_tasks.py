@@ -1,0 +1,223 @@
+"""Rewards and figures of each task, against arithmetic."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.gym.point_nav import PointNavEnv
+from sailenv_ros.gym.room_env import RoomEnv
+from sailenv_ros.gym.search import SearchEnv
+from sailenv_ros.gym.track import TrackEnv
+from sailenv_ros.gym.walker import Walker
+from sailenv_ros.space.free_space import BodySize, FreeSpace
+
+Make = Callable[..., RoomEnv]
+
+
+def corridor(length: int = 40) -> FreeSpace:
+    """A corridor of 0.1 m cells along x, 5 cells wide, with a wall around."""
+    cells = np.full((7, length), 100, np.int8)
+    cells[1:-1, 1:-1] = 0
+    body = BodySize(height_m=1.0, radius_m=0.1, resolution_m=0.1)
+    return FreeSpace(cells=cells, origin_m=(0.0, 0.0), body=body)
+
+
+# -- walking -------------------------------------------------------------------------------------
+
+
+def test_a_walker_goes_where_it_is_free() -> None:
+    walker = Walker(0.55, 0.35, 0.0, 1.0)
+    assert not walker.walk(corridor(), 1.0)
+    assert (walker.x_m, walker.y_m) == pytest.approx((1.55, 0.35))
+    walker.turn(90.0)
+    assert not walker.walk(corridor(), -0.2)
+    assert (walker.x_m, walker.y_m) == pytest.approx((1.55, 0.15))
+    assert walker.walked_m == pytest.approx(1.2)
+    assert not walker.bumps
+
+
+def test_a_walker_stops_at_a_wall() -> None:
+    walker = Walker(0.55, 0.35, 90.0, 1.0)
+    assert walker.walk(corridor(), 1.0)
+    assert walker.bumps == 1
+    assert corridor().is_free((walker.x_m, walker.y_m))
+    assert 0.55 <= walker.y_m <= 0.6
+    assert walker.walked_m == pytest.approx(walker.y_m - 0.35)
+
+
+def test_a_walker_cannot_leave_the_map() -> None:
+    open_ = corridor()
+    free = FreeSpace(cells=np.zeros_like(open_.cells), origin_m=(0.0, 0.0), body=open_.body)
+    walker = Walker(0.55, 0.35, 180.0, 1.0)
+    assert walker.walk(free, 5.0)
+    assert 0.0 <= walker.x_m < 0.1
+
+
+# -- Track ---------------------------------------------------------------------------------------
+
+
+def test_the_reward_of_tracking_is_the_angle_to_the_object(make: Make) -> None:
+    env = make("Track", discrete=False)
+    assert isinstance(env, TrackEnv)
+    _, info = env.reset(seed=2)
+    for number in range(60):
+        offset = env._target[:3, 3] - np.array(env._eye_pose().position_m)
+        ahead = env._eye_pose().matrix()[:3, 0]
+        error_deg = math.degrees(math.acos(offset @ ahead / np.linalg.norm(offset)))
+        assert info["angle_error_deg"] == pytest.approx(error_deg, abs=1e-5)
+        wish = np.clip(np.array([-1.0, 1.0]) * math.sin(number), -1, 1).astype(np.float32)
+        _, reward, _, _, info = env.step(wish)
+        assert reward == pytest.approx(max(-1.0, 1.0 - info["angle_error_deg"] / 37.5))
+
+
+def test_who_knows_where_the_object_is_keeps_it_centred(make: Make) -> None:
+    env = make("Track", discrete=False, views=("instance",), width=129, height=129)
+    assert isinstance(env, TrackEnv)
+    env.reset(seed=0)
+    target = env.room.ids[env.room.rows["target"]]
+    labels = []
+    for _ in range(100):
+        pose = env._eye_pose()
+        x, y, z = pose.matrix()[:3, :3].T @ (env._target[:3, 3] - np.array(pose.position_m))
+        turn_deg = np.degrees([math.atan2(y, x), math.atan2(-z, math.hypot(x, y))])
+        observation, *_, info = env.step(np.clip(turn_deg / 4.0, -1.0, 1.0).astype(np.float32))
+        if info["centred"] and info["target_pixels"] > 12:  # it is not hidden
+            labels.append(observation["instance"][64, 64])
+    assert labels.count(target) == len(labels) > 50
+    assert info["success"]
+    assert info["centred_share"] > 0.8
+
+
+def test_the_object_of_tracking_keeps_its_speed(make: Make) -> None:
+    env = make("Track", speed_m_s=0.9)
+    assert isinstance(env, TrackEnv)
+    env.reset(seed=0)
+    places = [env._target[:3, 3].copy()]
+    for _ in range(90):
+        env.step(0)
+        places.append(env._target[:3, 3].copy())
+    lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert lengths.max() == pytest.approx(0.03, rel=1e-6)  # 0.9 m/s for 1/30 s
+    assert np.median(lengths) == pytest.approx(0.03, rel=1e-6)
+    assert {env.room.space.is_free(place) for place in places} == {True}
+
+
+# -- PointNav ------------------------------------------------------------------------------------
+
+
+def follow(env: PointNavEnv | SearchEnv, goal: tuple[float, float, float]) -> None:
+    """Walk along the shortest path, corner by corner, with continuous actions."""
+    walker, space = env._walker, env.room.space
+    spare = len(env.action_space.shape or ()) and env.action_space.shape[0] - 2
+    for x, y, _ in space.path((walker.x_m, walker.y_m), goal)[1:]:
+        while math.hypot(x - walker.x_m, y - walker.y_m) > 0.02:
+            way = math.degrees(math.atan2(y - walker.y_m, x - walker.x_m))
+            left = math.remainder(way - walker.yaw_deg, 360.0) / env._turn_deg
+            far = math.hypot(x - walker.x_m, y - walker.y_m) / env._stride_m
+            ahead = 0.0 if abs(left) > 1.0 else min(1.0, far)
+            action = np.array([ahead, np.clip(left, -1, 1), *[0.0] * spare], np.float32)
+            env.step(action)
+
+
+def test_the_shortest_path_has_an_spl_of_nearly_one(make: Make) -> None:
+    env = make("PointNav", discrete=False)
+    assert isinstance(env, PointNavEnv)
+    _, info = env.reset(seed=3)
+    begun_m = info["distance_to_goal_m"]
+    follow(env, env._goal)
+    observation, reward, over, _, info = env.step(np.array([0, 0, 1], np.float32))
+    assert over
+    assert info["success"]
+    assert info["spl"] > 0.95
+    assert info["path_length_m"] == pytest.approx(info["shortest_path_m"], rel=0.05)
+    assert info["distance_to_goal_m"] <= 0.1 < begun_m
+    assert reward == pytest.approx(10.0 - 0.01)
+    assert observation["goal"][0] < 0.1
+
+
+def test_rewards_of_walking_add_up_to_the_distance_gained(make: Make) -> None:
+    env = make("PointNav")
+    _, before = env.reset(seed=1)
+    total = 0.0
+    for action in (1, 1, 2, 1, 1, 3, 3, 1):
+        _, reward, _, _, info = env.step(action)
+        total += reward
+    gained = before["distance_to_goal_m"] - info["distance_to_goal_m"]
+    assert total == pytest.approx(gained - 8 * 0.01)
+
+
+def test_to_stop_far_from_the_goal_is_no_success(make: Make) -> None:
+    env = make("PointNav")
+    env.reset(seed=0)
+    _, reward, over, _, info = env.step(0)
+    assert over
+    assert not info["success"]
+    assert info["spl"] == 0.0
+    assert reward == pytest.approx(-0.01)
+
+
+def test_the_goal_is_told_from_where_the_agent_stands(make: Make) -> None:
+    env = make("PointNav")
+    assert isinstance(env, PointNavEnv)
+    observation, _ = env.reset(seed=5)
+    distance, direction = observation["goal"].tolist()
+    ahead = env._walker.yaw_deg + math.degrees(direction)
+    there = (
+        env._walker.x_m + distance * math.cos(math.radians(ahead)),
+        env._walker.y_m + distance * math.sin(math.radians(ahead)),
+    )
+    assert there == pytest.approx(env._goal[:2], abs=1e-5)
+
+
+# -- Search --------------------------------------------------------------------------------------
+
+
+def test_an_object_is_found_near_it_and_with_it_in_view(make: Make) -> None:
+    env = make("Search", categories=["couch"], discrete=False, views=("category",))
+    assert isinstance(env, SearchEnv)
+    observation, info = env.reset(seed=0)
+    assert info["category"] == "couch"
+    assert observation["goal"] == env.room.snapshot.contents.categories.named("couch").id
+    assert info["distance_to_goal_m"] > 0.0
+    # To the nearest place from which it counts, then turned to the object.
+    space = env.room.space
+    cells = np.argwhere(env._errand.distances_m == 0.0)
+    here = np.array([env._walker.x_m, env._walker.y_m])
+    places = [space.position_of(row, column) for row, column in cells.tolist()]
+    goal = min(places, key=lambda place: math.dist(here, place[:2]))
+    follow(env, goal)
+    walker = env._walker
+    left = math.remainder(
+        math.degrees(math.atan2(0.6 - walker.y_m, 1.0 - walker.x_m)) - walker.yaw_deg, 360.0
+    )
+    for _ in range(12):
+        step = float(np.clip(left / 30.0, -1, 1))
+        observation, *_, info = env.step(np.array([0, step, 0.05, 0], np.float32))
+        left -= 30.0 * step
+    _, reward, over, _, info = env.step(np.array([0, 0, 0, 1], np.float32))
+    assert info["goal_pixels"] == np.count_nonzero(observation["category"] == observation["goal"])
+    assert over
+    assert info["success"]
+    assert info["spl"] > 0.8
+    assert reward == pytest.approx(9.99)
+
+
+def test_an_object_that_is_only_near_is_not_found(make: Make) -> None:
+    env = make("Search", categories=["couch"], seen_share=1.0)
+    env.reset(seed=0)
+    *_, info = env.step(0)
+    assert not info["success"]
+
+
+def test_categories_that_cannot_be_found_are_refused(make: Make) -> None:
+    with pytest.raises(UnknownName, match="unicorn"):
+        make("Search", categories=["unicorn"])
+    with pytest.raises(InvalidRequest, match="list"):
+        make("Search", categories="bed")
+    with pytest.raises(InvalidRequest, match="toilet"):
+        make("Search", categories=["toilet"]).reset(seed=0)
