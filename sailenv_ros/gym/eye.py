@@ -15,6 +15,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.gym.retina import Retina
 from sailenv_ros.gym.room import Room
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
@@ -67,6 +68,8 @@ class Eye:
     picture : PictureSettings
     most_depth_m : float
         Largest depth and range [m]; all beyond, and nothing at all, counts as that.
+    retina : (2,) tuple of int or None
+        Rings and wedges of a `Retina` that views are seen by; None sees pixels.
 
     Attributes
     ----------
@@ -81,6 +84,7 @@ class Eye:
         intrinsics: CameraIntrinsics,
         picture: PictureSettings,
         most_depth_m: float = 10.0,
+        retina: tuple[int, int] | None = None,
     ) -> None:
         if not isinstance(intrinsics, CameraIntrinsics):
             raise InvalidRequest("intrinsics", intrinsics, "an object of CameraIntrinsics")
@@ -88,6 +92,11 @@ class Eye:
         self.intrinsics = intrinsics
         self.picture = PictureSettings.checked("picture", picture)
         self.most_depth_m = DEPTH_LIMIT.number("most_depth_m", most_depth_m)
+        self._retina: Retina | None = None
+        if retina is not None:
+            if not isinstance(retina, tuple | list) or len(retina) != 2:
+                raise InvalidRequest("retina", retina, "two integers: rings, wedges")
+            self._retina = Retina(intrinsics.width, intrinsics.height, *retina)
         self.spaces = {name: self._space(name) for name in self.views}
 
     def look(
@@ -121,6 +130,8 @@ class Eye:
         """Write the observed views into arrays of their spaces."""
         for name in self.views:
             view = views[name]
+            if self._retina is not None:
+                view = self._retina.sample(view, mean=name == "rgb")
             if name in _REACH:
                 np.copyto(out[name], view)
                 np.nan_to_num(out[name], copy=False, nan=0.0, posinf=self.most_depth_m)
@@ -139,7 +150,9 @@ class Eye:
 
     def _space(self, name: str) -> spaces.Box:
         spec = VIEWS[name]
-        shape = spec.shape(self.intrinsics.height, self.intrinsics.width)
+        lens, retina = self.intrinsics, self._retina
+        size = (lens.height, lens.width) if retina is None else (retina.rings, retina.wedges)
+        shape = spec.shape(*size)
         if name in _REACH:
             return spaces.Box(0.0, self.most_depth_m, shape, np.float32)
         if name in _SIGNED:

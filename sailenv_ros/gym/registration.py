@@ -13,7 +13,10 @@ ENVIRONMENTS: Mapping[str, tuple[str, int]] = MappingProxyType(
     {
         "sailenv/Track-v0": ("track:TrackEnv", 300),
         "sailenv/Search-v0": ("search:SearchEnv", 200),
+        "sailenv/Explore-v0": ("explore:ExploreEnv", 200),
+        "sailenv/Fixate-v0": ("fixate:FixateEnv", 100),
         "sailenv/PointNav-v0": ("point_nav:PointNavEnv", 200),
+        "sailenv/Rearrange-v0": ("rearrange:RearrangeEnv", 200),
     }
 )
 """Module and class of each environment, and the steps after which an episode is cut off."""

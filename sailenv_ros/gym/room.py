@@ -87,9 +87,14 @@ class Room:
         return self.order.name
 
     @cached_property
+    def own_boxes(self) -> NDArray[np.float64]:
+        """(N, 2, 3) lowest and highest corner of each instance in its own axes [m]."""
+        return boxes_of(self.snapshot)
+
+    @cached_property
     def boxes(self) -> NDArray[np.float64]:
         """(N, 2, 3) lowest and highest corner of the box around each instance, in the world [m]."""
-        ends, poses = boxes_of(self.snapshot), self.snapshot.world_from_body
+        ends, poses = self.own_boxes, self.snapshot.world_from_body
         middles = np.append(ends.mean(axis=1), np.ones((len(ends), 1)), axis=1)
         centres = np.einsum("nij,nj->ni", poses, middles)[:, :3]
         halves = np.einsum("nij,nj->ni", np.abs(poses[:, :3, :3]), np.ptp(ends, axis=1) / 2.0)

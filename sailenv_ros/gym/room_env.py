@@ -58,6 +58,7 @@ class RoomSettings(TypedDict, total=False):
     intrinsics: CameraIntrinsics | None
     picture: PictureSettings
     most_depth_m: float
+    retina: tuple[int, int] | None
     split: str
     rooms: int | Sequence[str]
     kinds: Sequence[str]
@@ -83,6 +84,8 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
         Of the view ``rgb``.
     most_depth_m : float
         What is farther, or nothing at all, is observed as that [m].
+    retina : (2,) tuple of int or None
+        Rings and wedges by which views are seen, see `Retina`; None sees pixels.
     split : {'train', 'val', 'test'}
     rooms : int or sequence of str
         How many rooms of the split, or names of scenes; each episode is in one, drawn at random.
@@ -109,7 +112,7 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
     }
     body: ClassVar[BodySize] = BodySize(height_m=1.3, radius_m=0.2)
     """Size of the agent that walks in the rooms."""
-    needs: ClassVar[frozenset[str]] = frozenset()
+    needs: frozenset[str] = frozenset()
     """Views that the task judges by, whether they are observed or not."""
 
     def __init__(
@@ -122,6 +125,7 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
         intrinsics: CameraIntrinsics | None = None,
         picture: PictureSettings = FAST_PICTURE,
         most_depth_m: float = 10.0,
+        retina: tuple[int, int] | None = None,
         split: str = "train",
         rooms: int | Sequence[str] = 8,
         kinds: Sequence[str] = KINDS,
@@ -135,7 +139,7 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
         lens = intrinsics or CameraIntrinsics(
             width=width, height=height, vertical_fov_deg=vertical_fov_deg
         )
-        self.eye = Eye(views, lens, picture, most_depth_m)
+        self.eye = Eye(views, lens, picture, most_depth_m, retina)
         self.discrete = checked_flag("discrete", discrete)
         self.render_mode = render_mode
         self.room_names = room_names(rooms, split=split, kinds=kinds)

@@ -14,6 +14,8 @@ objects:
   - {{name: ground, asset: plane, category: floor, static: true, scale: [5, 4, 1]}}
   - {{name: box, asset: cube, category: couch, position: [1, 0.6, 0.4], scale: 0.8, static: true}}
   - {{name: cot, asset: cube, category: bed, position: [-1.2, -0.8, 0.3], scale: 0.6, static: true}}
+  - {{name: bench, asset: cube, position: [-1, 1.2, 0.3], scale: [1.2, 0.8, 0.6], static: true}}
+  - {{name: mug, asset: cylinder, category: bowl, position: [-1.2, 1.2, 0.65], scale: 0.1}}
   - {{name: ball, asset: sphere, category: cup, position: [1, 0.6, 0.95], scale: 0.3, static: true}}
 """
 
