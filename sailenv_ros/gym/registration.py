@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from types import MappingProxyType
+from typing import Any
 
 import gymnasium
 
@@ -29,5 +31,12 @@ def register_environments() -> None:
             gymnasium.register(
                 name,
                 entry_point=f"sailenv_ros.gym.{place}",
+                vector_entry_point=partial(_make_vector, place),
                 max_episode_steps=most_steps,
             )
+
+
+def _make_vector(task: str, **settings: Any) -> Any:
+    from sailenv_ros.gym.process_vector import make_vector  # needs all that draws
+
+    return make_vector(task, **settings)
