@@ -104,7 +104,11 @@ class PointNavEnv(RoomEnv):
             self._stopped = stop > 0.5
         if not self._stopped:
             self._walker.turn(left * self._turn_deg)
-            self._walker.walk(self.room.space, ahead * self._stride_m)
+            self._walker.walk(self.room.space, ahead * self._stride_m, self._is_taken)
+
+    def _is_taken(self, x_m: float, y_m: float) -> bool:
+        """Return whether somebody else stands at a place."""
+        return False
 
     def _judge(self, look: Look) -> tuple[float, bool]:
         if not self._steps:

@@ -6,6 +6,7 @@ there are. A process that dies is told in one sentence as soon as it is gone.
 
 from __future__ import annotations
 
+import itertools
 import multiprocessing
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -111,7 +112,7 @@ class ProcessVectorEnv(VectorEnv[Arrays, Any, Any]):
         kept = {name: (memory[name], one.shape, one.dtype.str) for name, one in shapes.items()}
         ends = np.linspace(0, self.num_envs, processes + 1).astype(int).tolist()
         try:
-            for first, last in zip(ends[:-1], ends[1:], strict=True):
+            for first, last in itertools.pairwise(ends):
                 ours, theirs = context.Pipe()
                 order = (task, last - first, first, max_episode_steps, settings)
                 process = context.Process(target=_serve, args=(theirs, kept, order), daemon=True)

@@ -27,10 +27,29 @@ from sailenv_ros.space.outlines import solids_of
 from sailenv_ros.types.labels import UNLABELLED_CATEGORY
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["Room", "RoomOrder", "open_room"]
+__all__ = ["OwnObject", "Room", "RoomOrder", "open_room"]
 
 STRUCTURE = frozenset({"wall", "floor", "ceiling", "window", "door", "curtain", "plane"})
 """Categories of the parts of rooms: nobody searches for them."""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnObject:
+    """Object that an environment moves by itself.
+
+    Attributes
+    ----------
+    name, asset : str
+    scale : (3,) tuple of float
+        Along the asset's axes.
+    colour : str
+        As in a scene file.
+    """
+
+    name: str
+    asset: str
+    scale: tuple[float, float, float]
+    colour: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +62,8 @@ class RoomOrder:
         Of a scene.
     body : BodySize
         Who walks in it.
-    own : tuple of (name, asset, scale, colour)
-        Objects that the environment moves by itself: scale in the asset's lengths, colour as in a
-        scene file.
+    own : tuple of OwnObject
+        Objects that the environment moves by itself.
     baked : bool
         True for light that was baked, False for plain light.
     threads : int
@@ -54,7 +72,7 @@ class RoomOrder:
 
     name: str
     body: BodySize
-    own: tuple[tuple[str, str, float, str], ...] = ()
+    own: tuple[OwnObject, ...] = ()
     baked: bool = False
     threads: int = 1
 
@@ -115,7 +133,7 @@ class Room:
     @cached_property
     def objects(self) -> Mapping[str, tuple[int, ...]]:
         """Rows of the objects of each category, without parts of the room and own objects."""
-        own = {name for name, *_ in self.order.own}
+        own = {one.name for one in self.order.own}
         found: dict[str, list[int]] = {}
         for row, drawn in enumerate(self.snapshot.contents.instances):
             one = drawn.instance
@@ -149,14 +167,14 @@ def open_room(order: RoomOrder, library: SceneLibrary, renderer: NativeRenderer)
     """
     own: list[dict[str, Any]] = [
         {
-            "name": name,
-            "asset": asset,
-            "scale": scale,
-            "colour": colour,
+            "name": one.name,
+            "asset": one.asset,
+            "scale": one.scale,
+            "colour": one.colour,
             "gravity": False,
             "position": [0.0, 0.0, 50.0 + 5.0 * number],
         }
-        for number, (name, asset, scale, colour) in enumerate(order.own)
+        for number, one in enumerate(order.own)
     ]
     with closing(library.build(order.name, more=SceneOverlay(own))) as world:
         if order.baked:

@@ -17,7 +17,7 @@ from typing_extensions import TypedDict
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.gym.eye import Eye, Look
-from sailenv_ros.gym.room import Room, RoomOrder
+from sailenv_ros.gym.room import OwnObject, Room, RoomOrder
 from sailenv_ros.gym.room_store import shared_rooms
 from sailenv_ros.gym.room_table import KINDS, room_names
 from sailenv_ros.native.library import thread_count
@@ -200,6 +200,12 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
         InvalidRequest, InvalidState
             If there is no such room, or none for this task.
         """
+        self.begin(seed=seed, options=options)
+        observation, _, _, _, info = self.observe(out)
+        return observation, info
+
+    def begin(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> None:
+        """Begin an episode without a look; see `reset`, which is `begin` and `observe`."""
         if self._closed:
             raise InvalidState("the environment was closed; make another one")
         super().reset(seed=seed)
@@ -219,9 +225,6 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
         else:
             raise InvalidRequest("rooms", ", ".join(order[:4]), self._lacking())
         self._over = False
-        look = self._look()
-        self._judge(look)
-        return self._observation(look, out), self._info()
 
     def step(
         self, action: Any, *, out: Mapping[str, NDArray[Any]] | None = None
@@ -235,12 +238,31 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
         InvalidState
             If no episode is running.
         """
-        if not self.action_space.contains(action):
-            raise InvalidRequest("action", action, f"one of {self.action_space}")
+        self.act(action)
+        return self.observe(out)
+
+    def act(self, action: Any) -> None:
+        """Carry out an action without a look; see `step`, which is `act` and `observe`."""
+        self.require_action(action)
         if self._over:
             raise InvalidState("the episode is over, or none has begun; call reset first")
         self._steps += 1
         self._act(action)
+
+    def require_action(self, action: Any) -> None:
+        """Refuse an action that is not in `action_space`.
+
+        Raises
+        ------
+        InvalidRequest
+        """
+        if not self.action_space.contains(action):
+            raise InvalidRequest("action", action, f"one of {self.action_space}")
+
+    def observe(
+        self, out: Mapping[str, NDArray[Any]] | None = None
+    ) -> tuple[Arrays, float, bool, bool, Info]:
+        """Look, and judge what is there; once after each `begin` and each `act`."""
         look = self._look()
         reward, self._over = self._judge(look)
         return self._observation(look, out), reward, self._over, False, self._info()
@@ -294,8 +316,8 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
         """Return the poses (4, 4) of what was moved, by rows of the room's snapshot."""
         return NO_PLACES
 
-    def _own_objects(self, name: str) -> tuple[tuple[str, str, float, str], ...]:
-        """Return own objects in a room; see `RoomOrder`."""
+    def _own_objects(self, name: str) -> tuple[OwnObject, ...]:
+        """Return own objects in a room."""
         return ()
 
     def _other_spaces(self) -> dict[str, spaces.Space[Any]]:

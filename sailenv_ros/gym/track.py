@@ -19,6 +19,7 @@ from typing_extensions import Unpack
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.gym.eye import Look
 from sailenv_ros.gym.ground import away_from, random_cell
+from sailenv_ros.gym.room import OwnObject
 from sailenv_ros.gym.room_env import STEP_NS, Info, RoomEnv, RoomSettings
 from sailenv_ros.gym.walker import Walker
 from sailenv_ros.types.geometry import Pose
@@ -89,10 +90,11 @@ class TrackEnv(RoomEnv):
     def _actions(self) -> spaces.Space[Any]:
         return spaces.Discrete(5) if self.discrete else spaces.Box(-1.0, 1.0, (2,), np.float32)
 
-    def _own_objects(self, name: str) -> tuple[tuple[str, str, float, str], ...]:
+    def _own_objects(self, name: str) -> tuple[OwnObject, ...]:
         number = self.room_names.index(name)
         asset = self._assets[number % len(self._assets)]
-        return (("target", asset, SIZE_M, COLOURS[number % len(COLOURS)]),)
+        size = (SIZE_M, SIZE_M, SIZE_M)
+        return (OwnObject("target", asset, size, COLOURS[number % len(COLOURS)]),)
 
     def _begin(self) -> bool:
         space = self.room.space

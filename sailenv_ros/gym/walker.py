@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from sailenv_ros.space.free_space import FREE, FreeSpace
@@ -45,10 +46,23 @@ class Walker:
         self.yaw_deg = math.remainder(self.yaw_deg + left_deg, 360.0)
         self.pitch_deg = min(STEEPEST_DEG, max(-STEEPEST_DEG, self.pitch_deg + down_deg))
 
-    def walk(self, space: FreeSpace, metres: float) -> bool:
+    def walk(
+        self,
+        space: FreeSpace,
+        metres: float,
+        is_taken: Callable[[float, float], bool] = lambda x_m, y_m: False,
+    ) -> bool:
         """Go ahead on a straight line as far as all cells are free; say if it was stopped.
 
         Tried every half cell.
+
+        Parameters
+        ----------
+        space : FreeSpace
+        metres : float
+            Backwards if negative.
+        is_taken : callable
+            Whether somebody else stands at a place [m].
         """
         if metres == 0.0:
             return False
@@ -59,12 +73,12 @@ class Walker:
         height, width = space.cells.shape
         reached = 0
         for number in range(1, count + 1):
-            share = number / count
-            row = math.floor((self.y_m + across * share - low) / side)
-            column = math.floor((self.x_m + along * share - left) / side)
+            x_m = self.x_m + along * (number / count)
+            y_m = self.y_m + across * (number / count)
+            row, column = math.floor((y_m - low) / side), math.floor((x_m - left) / side)
             if not (0 <= row < height and 0 <= column < width):
                 break
-            if space.cells[row, column] != FREE:
+            if space.cells[row, column] != FREE or is_taken(x_m, y_m):
                 break
             reached = number
         share = reached / count
