@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
@@ -85,7 +85,7 @@ class _Member(PointNavEnv):
         return f"rooms with places for {self._count} agents"
 
 
-class PointNavParallelEnv(ParallelEnv[str, Arrays, Any]):
+class PointNavParallelEnv(ParallelEnv):  # type: ignore[misc]  # PettingZoo has no types
     """Walk to a point each; spaces, rewards and figures as of `PointNavEnv`.
 
     Parameters
@@ -98,7 +98,7 @@ class PointNavParallelEnv(ParallelEnv[str, Arrays, Any]):
         See `RoomEnv`.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
+    metadata: ClassVar[dict[str, Any]] = {
         **RoomEnv.metadata,
         "name": "sailenv_point_nav_v0",
     }
@@ -185,7 +185,7 @@ class PointNavParallelEnv(ParallelEnv[str, Arrays, Any]):
 
     def render(self) -> NDArray[np.uint8] | None:
         """Return what the first agent sees; None without a `render_mode`."""
-        return cast("NDArray[np.uint8] | None", self._members[0].render())
+        return self._members[0].render()
 
     def close(self) -> None:
         """Leave the room; a second call does nothing."""

@@ -17,6 +17,7 @@ ENVIRONMENTS: Mapping[str, tuple[str, int]] = MappingProxyType(
         "sailenv/Search-v0": ("search:SearchEnv", 200),
         "sailenv/Explore-v0": ("explore:ExploreEnv", 200),
         "sailenv/Fixate-v0": ("fixate:FixateEnv", 100),
+        "sailenv/Open-v0": ("open_door:OpenEnv", 200),
         "sailenv/PointNav-v0": ("point_nav:PointNavEnv", 200),
         "sailenv/Rearrange-v0": ("rearrange:RearrangeEnv", 200),
     }

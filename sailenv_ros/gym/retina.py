@@ -85,4 +85,4 @@ class Retina:
             sums = np.add.reduceat(flat[self._order].astype(np.int64), self._starts)
             counts = self._counts.reshape(-1, *[1] * (flat.ndim - 1))
             cells[self._cells] = (2 * sums + counts) // (2 * counts)
-        return cells.reshape(self.rings, self.wedges, *view.shape[2:])
+        return np.asarray(cells.reshape(self.rings, self.wedges, *view.shape[2:]))

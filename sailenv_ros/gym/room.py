@@ -6,7 +6,8 @@ environments share a room, and what one of them sees depends on no other.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -26,8 +27,12 @@ from sailenv_ros.space.grid import map_free_space
 from sailenv_ros.space.outlines import solids_of
 from sailenv_ros.types.labels import UNLABELLED_CATEGORY
 from sailenv_ros.types.snapshot import WorldSnapshot
+from sailenv_ros.world.world import World
 
-__all__ = ["OwnObject", "Room", "RoomOrder", "open_room"]
+__all__ = ["DOOR_STEPS", "Door", "OwnObject", "Room", "RoomOrder", "open_room"]
+
+DOOR_STEPS = 8
+"""Equal steps from shut to open."""
 
 STRUCTURE = frozenset({"wall", "floor", "ceiling", "window", "door", "curtain", "plane"})
 """Categories of the parts of rooms: nobody searches for them."""
@@ -68,6 +73,8 @@ class RoomOrder:
         True for light that was baked, False for plain light.
     threads : int
         That draw.
+    opens : bool
+        True where doors are opened.
     """
 
     name: str
@@ -75,6 +82,27 @@ class RoomOrder:
     own: tuple[OwnObject, ...] = ()
     baked: bool = False
     threads: int = 1
+    opens: bool = False
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Door:
+    """Something on a hinge.
+
+    Attributes
+    ----------
+    name : str
+        Of what moves on it.
+    leaf : int
+        Its row in the snapshot.
+    places : tuple of mapping of int to (4, 4) array
+        Poses of all that moves with it, by rows: from the start to the farther limit, in equal
+        steps of the angle.
+    """
+
+    name: str
+    leaf: int
+    places: tuple[Mapping[int, NDArray[np.float64]], ...]
 
 
 @dataclass(eq=False, kw_only=True)
@@ -89,6 +117,8 @@ class Room:
     space : FreeSpace
         Where the body can stand; own objects are not in the way.
     renderer : NativeRenderer
+    doors : tuple of Door
+        What opens in it.
     users : int
         Environments that are in it.
     """
@@ -97,6 +127,7 @@ class Room:
     snapshot: WorldSnapshot
     space: FreeSpace
     renderer: NativeRenderer
+    doors: tuple[Door, ...] = ()
     users: int = 0
 
     @property
@@ -190,9 +221,29 @@ def open_room(order: RoomOrder, library: SceneLibrary, renderer: NativeRenderer)
         ]
         space = map_free_space(solids, order.body)
         snapshot = world.snapshot()
+        doors = tuple(_doors_of(world, snapshot)) if order.opens else ()
     if not (space.regions == 1).any():
         raise NoFreeSpace(
             f"in {order.name} no place is free for a body of radius {order.body.radius_m:g} m and "
             f"height {order.body.height_m:g} m; a smaller one may find one"
         )
-    return Room(order=order, snapshot=snapshot, space=space, renderer=renderer)
+    return Room(order=order, snapshot=snapshot, space=space, renderer=renderer, doors=doors)
+
+
+def _doors_of(world: World, snapshot: WorldSnapshot) -> Iterator[Door]:
+    """Yield what hinges of a world with limits move, opened bit by bit; it is shut afterwards."""
+    for joint in world.joints():
+        if joint.type != "hinge" or not 0.0 < joint.high - joint.low < math.inf:
+            continue
+        shut = joint.position
+        far = joint.high if joint.high - shut >= shut - joint.low else joint.low
+        poses = []
+        for share in np.linspace(0.0, 1.0, DOOR_STEPS + 1):
+            world.set_joint(joint.id, float(shut + share * (far - shut)))
+            poses.append(world.snapshot().world_from_body)
+        world.set_joint(joint.id, shut)
+        moved = (np.array(poses) != snapshot.world_from_body).any(axis=(0, 2, 3))
+        rows = tuple(np.flatnonzero(moved).tolist())
+        leaf = int(np.flatnonzero(snapshot.contents.instance_ids == joint.id)[0])
+        places = tuple({row: pose[row] for row in rows} for pose in poses)
+        yield Door(name=joint.name, leaf=leaf, places=places)

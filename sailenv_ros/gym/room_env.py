@@ -112,6 +112,8 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
     }
     body: ClassVar[BodySize] = BodySize(height_m=1.3, radius_m=0.2)
     """Size of the agent that walks in the rooms."""
+    opens: ClassVar[bool] = False
+    """Whether doors are opened."""
     needs: frozenset[str] = frozenset()
     """Views that the task judges by, whether they are observed or not."""
 
@@ -343,6 +345,7 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
             self._own_objects(name),
             self._baked,
             min(self._threads, thread_count()),
+            self.opens,
         )
         entered = self._store.enter(order)
         self._leave()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import gymnasium
 import numpy as np
@@ -32,14 +32,13 @@ class LogPolarRetina(gymnasium.ObservationWrapper[Arrays, Any, Arrays]):
         eye = _room_env(env).eye
         self._views = eye.views
         self._retina = Retina(eye.intrinsics.width, eye.intrinsics.height, rings, wedges)
-        assert isinstance(env.observation_space, spaces.Dict)
-        inside = dict(env.observation_space.spaces)
+        inside = _spaces_of(env)
         for name in self._views:
             box = inside[name]
             assert isinstance(box, spaces.Box)
             shape = (rings, wedges, *box.shape[2:])
             inside[name] = spaces.Box(box.low.min(), box.high.max(), shape, box.dtype.type)
-        self.observation_space = spaces.Dict(inside)
+        self.observation_space = _dict_space(inside)
 
     def observation(self, observation: Arrays) -> Arrays:
         """Return an observation whose views are seen by the retina."""
@@ -67,20 +66,30 @@ class Motion(gymnasium.ObservationWrapper[Arrays, Any, Arrays]):
 
     def __init__(self, env: gymnasium.Env[Arrays, Any]) -> None:
         super().__init__(env)
-        assert isinstance(env.observation_space, spaces.Dict)
+        inside = _spaces_of(env)
         if "flow" not in _room_env(env).eye.views:
             raise InvalidState('motion is that of the view "flow"; add it to the views')
-        flow = env.observation_space.spaces["flow"]
+        flow = inside["flow"]
         assert isinstance(flow, spaces.Box)
         self._step_s = STEP_NS * 1e-9
         most = 1.5 * float(flow.high.max()) * self._step_s
         motion = spaces.Box(0.0, most, flow.shape[:2], np.float32)
-        self.observation_space = spaces.Dict({**env.observation_space.spaces, "motion": motion})
+        self.observation_space = _dict_space({**inside, "motion": motion})
 
     def observation(self, observation: Arrays) -> Arrays:
         """Return an observation with the motion added."""
         length = np.linalg.norm(observation["flow"], axis=2) * self._step_s
         return {**observation, "motion": length.astype(np.float32)}
+
+
+def _spaces_of(env: gymnasium.Env[Any, Any]) -> dict[str, spaces.Space[Any]]:
+    space: Any = env.observation_space
+    return dict(space.spaces)
+
+
+def _dict_space(inside: dict[str, spaces.Space[Any]]) -> spaces.Space[Arrays]:
+    # Declared as the space of a mapping, which Dict is not in the types of Gymnasium.
+    return cast("spaces.Space[Arrays]", spaces.Dict(inside))
 
 
 def _room_env(env: gymnasium.Env[Any, Any]) -> RoomEnv:

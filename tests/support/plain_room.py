@@ -16,6 +16,12 @@ objects:
   - {{name: cot, asset: cube, category: bed, position: [-1.2, -0.8, 0.3], scale: 0.6, static: true}}
   - {{name: bench, asset: cube, position: [-1, 1.2, 0.3], scale: [1.2, 0.8, 0.6], static: true}}
   - {{name: mug, asset: cylinder, category: bowl, position: [-1.2, 1.2, 0.65], scale: 0.1}}
+  - name: flap
+    asset: cube
+    category: door
+    position: [2.2, -1.2, 1]
+    scale: [0.05, 0.8, 2]
+    joint: {{type: hinge, origin: [0, 0.4, 0], limits: [-1.6, 0]}}
   - {{name: ball, asset: sphere, category: cup, position: [1, 0.6, 0.95], scale: 0.3, static: true}}
 """
 

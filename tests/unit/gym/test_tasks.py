@@ -9,7 +9,11 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.gym.explore import ExploreEnv
+from sailenv_ros.gym.fixate import FixateEnv
+from sailenv_ros.gym.open_door import OpenEnv
 from sailenv_ros.gym.point_nav import PointNavEnv
+from sailenv_ros.gym.rearrange import RearrangeEnv
 from sailenv_ros.gym.room_env import RoomEnv
 from sailenv_ros.gym.search import SearchEnv
 from sailenv_ros.gym.track import TrackEnv
@@ -76,7 +80,7 @@ def test_the_reward_of_tracking_is_the_angle_to_the_object(make: Make) -> None:
 
 
 def test_who_knows_where_the_object_is_keeps_it_centred(make: Make) -> None:
-    env = make("Track", discrete=False, views=("instance",), width=129, height=129)
+    env = make("Track", discrete=False, views=("instance", "depth"), width=201, height=201)
     assert isinstance(env, TrackEnv)
     env.reset(seed=0)
     target = env.room.ids[env.room.rows["target"]]
@@ -86,9 +90,11 @@ def test_who_knows_where_the_object_is_keeps_it_centred(make: Make) -> None:
         x, y, z = pose.matrix()[:3, :3].T @ (env._target[:3, 3] - np.array(pose.position_m))
         turn_deg = np.degrees([math.atan2(y, x), math.atan2(-z, math.hypot(x, y))])
         observation, *_, info = env.step(np.clip(turn_deg / 4.0, -1.0, 1.0).astype(np.float32))
-        if info["angle_error_deg"] < 1.0 and info["target_pixels"] > 12:  # it is not hidden
-            labels.append(observation["instance"][64, 64])
-    assert labels.count(target) == len(labels) > 50
+        away_m = math.dist(env._target[:3, 3], pose.position_m)
+        # Nothing stands before its middle.
+        if info["angle_error_deg"] < 1.0 and observation["depth"][100, 100] > away_m - 0.2:
+            labels.append(observation["instance"][100, 100])
+    assert labels.count(target) == len(labels) > 20
     assert info["success"]
     assert info["centred_share"] > 0.8
 
@@ -221,3 +227,151 @@ def test_categories_that_cannot_be_found_are_refused(make: Make) -> None:
         make("Search", categories="bed")
     with pytest.raises(InvalidRequest, match="toilet"):
         make("Search", categories=["toilet"]).reset(seed=0)
+
+
+# -- Open ----------------------------------------------------------------------------------------
+
+
+def before_the_door(make: Make) -> OpenEnv:
+    env = make("Open", views=("instance",), reach_m=1.2)
+    assert isinstance(env, OpenEnv)
+    env.reset(seed=0)
+    walker = env._walker
+    walker.x_m, walker.y_m, walker.yaw_deg = 1.15, -1.0, 0.0
+    env.step(1), env.step(2)  # to look
+    return env
+
+
+def test_a_door_opens_in_equal_steps_about_its_hinge(make: Make) -> None:
+    env = before_the_door(make)
+    assert env._info()["reached"]
+    total = 0.0
+    for number in range(1, 9):
+        _, reward, over, _, info = env.step(3)
+        assert info["open_share"] == number / 8
+        total += reward
+        # The hinge is at (2.2, -0.8); the leaf's middle is 0.4 m from it.
+        pose = env._places()[env._door.leaf]
+        angle = -1.6 * number / 8
+        middle = (2.2 + 0.4 * math.sin(angle), -0.8 - 0.4 * math.cos(angle))
+        assert pose[:2, 3] == pytest.approx(middle, abs=1e-6)
+        if not info["reached"] and not over:
+            offset = pose[:2, 3] - (env._walker.x_m, env._walker.y_m)
+            env._walker.yaw_deg = math.degrees(math.atan2(offset[1], offset[0]))
+            total += env.step(1)[1] + env.step(2)[1]
+    assert over
+    assert info["success"]
+    assert total == pytest.approx(1.0 + 10.0 - 0.01 * env._steps + 0.02)
+
+
+def test_a_door_does_not_turn_against_the_agent(make: Make) -> None:
+    env = before_the_door(make)
+    env._walker.x_m, env._walker.y_m = 1.9, -1.2
+    for _ in range(3):
+        *_, info = env.step(3)
+    assert info["stuck"] > 0
+    assert info["open_share"] < 3 / 8
+
+
+def test_a_door_out_of_reach_does_not_move(make: Make) -> None:
+    env = before_the_door(make)
+    env._walker.x_m = 0.8
+    env.step(1), env.step(2)
+    *_, info = env.step(3)
+    assert not info["reached"]
+    assert info["open_share"] == 0.0
+
+
+# -- Explore, Fixate, Rearrange ------------------------------------------------------------------
+
+
+def test_the_floor_seen_is_what_rays_meet(make: Make) -> None:
+    env = make("Explore", width=40, height=30)
+    assert isinstance(env, ExploreEnv)
+    _, info = env.reset(seed=1)
+    space, camera = env.room.space, env._past.camera
+    world, seen = camera.world_from_camera, set()
+    rays = camera.intrinsics.rays().reshape(-1, 3) @ world[:3, :3].T
+    eye = world[:3, 3]
+    blocks = [env.room.boxes[env.room.rows[name]] for name in ("box", "cot", "bench", "flap")]
+    for ray in rays:
+        if ray[2] >= 0.0:
+            continue
+        ground = eye + ray * (-eye[2] / ray[2])
+        cell = space.cell_of(ground)
+        if cell is None or space.regions[cell] != 1:
+            continue
+        # Whether a box is in between: by slabs.
+        hit = False
+        for low, high in blocks:
+            ends = np.stack([(low - eye) / ray, (high - eye) / ray])
+            first, last = ends.min(axis=0).max(), ends.max(axis=0).min()
+            hit = hit or 0.0 < first < min(last, -eye[2] / ray[2])
+        if not hit:
+            seen.add(cell)
+    marked = {tuple(cell) for cell in np.argwhere(env._seen).tolist()}
+    # Rays that graze edges, or the ball, may differ.
+    assert len(seen ^ marked) <= 0.03 * len(seen)
+    assert info["coverage"] == len(marked) / (space.regions == 1).sum()
+
+
+def test_exploring_is_rewarded_by_the_area_seen(make: Make) -> None:
+    env = make("Explore")
+    _, before = env.reset(seed=0)
+    total = 0.0
+    for _ in range(14):
+        _, reward, over, _, info = env.step(1)
+        total += reward
+        assert over == info["success"] == (info["coverage"] >= 0.95)
+        if over:
+            break
+    assert total == pytest.approx(info["seen_m2"] - before["seen_m2"])
+    assert info["coverage"] > before["coverage"]
+    assert info["objects_seen"] <= info["objects"]
+
+
+def test_each_object_is_rewarded_once(make: Make) -> None:
+    env = make("Fixate", discrete=False, goal_objects=2, views=("rgb",))
+    assert isinstance(env, FixateEnv)
+    observation, info = env.reset(seed=0)
+    assert observation["rgb"].shape == (20, 32, 3)
+    env._eye.x_m, env._eye.y_m = 0.0, -1.5
+    rewards, over = [], False
+    for name in ("box", "box", "cot"):
+        low, high = env.room.boxes[env.room.rows[name]]
+        offset = 0.5 * (low + high) - np.array(env._eye_pose().position_m)
+        env._eye.yaw_deg = math.degrees(math.atan2(offset[1], offset[0]))
+        env._eye.pitch_deg = math.degrees(-math.atan2(offset[2], math.hypot(*offset[:2])))
+        observation, reward, over, _, info = env.step(np.zeros(2, np.float32))
+        assert info["instance"] == env.room.ids[env.room.rows[name]]
+        assert info["category"] == ("couch" if name == "box" else "bed")
+        assert env.room.snapshot.contents.categories[int(observation["label"])].name in (
+            info["category"],
+        )
+        rewards.append(reward)
+    started = info["fixated"] - sum(reward > 0 for reward in rewards)
+    assert rewards[1] == pytest.approx(-0.01)
+    assert sum(rewards) == pytest.approx(2 - started - 0.03)
+    assert over
+
+
+def test_what_has_moved_is_told_by_pointing(make: Make) -> None:
+    env = make("Rearrange", look_steps=3, width=201, height=151)
+    assert isinstance(env, RearrangeEnv)
+    env.reset(seed=0)
+    (thing,) = env._goals
+    still = env.room.scene_at(0, env._places()).world_from_body[thing].copy()
+    assert env.step(4)[1] == 0.0  # nothing has moved yet
+    env.step(0), env.step(0)
+    assert env._phase == 1
+    moved = env.room.scene_at(0, env._places()).world_from_body[thing]
+    assert 0.2 <= np.linalg.norm(moved[:2, 3] - still[:2, 3]) <= 1.2
+    assert moved[2, 3] == still[2, 3]
+    env._eye.pitch_deg = 60.0
+    _, reward, over, _, info = env.step(4)
+    assert (reward, over, info["wrong"]) == (-0.5, False, 1)
+    offset = moved[:3, 3] - np.array(env._eye_pose().position_m)
+    env._eye.yaw_deg = math.degrees(math.atan2(offset[1], offset[0]))
+    env._eye.pitch_deg = math.degrees(-math.atan2(offset[2], math.hypot(*offset[:2])))
+    _, reward, over, _, info = env.step(4)
+    assert (reward, over, info["found"]) == (1.0, True, 1)
