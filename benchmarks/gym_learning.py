@@ -1,11 +1,12 @@
 """Learning curves of stable-baselines3's PPO, beside scripted and random actions, in unseen rooms.
 
-    python -m benchmarks.gym_learning Track [--minutes N] [--seed N] [--rooms N]
+    python -m benchmarks.gym_learning Track [--minutes N] [--seed N] [--rooms N] [--episodes N]
     python -m benchmarks.gym_learning Search
 
 stable-baselines3 and torch are not among the packages of the project: install them beside it. The
 agent sees two maps of 20×20: the pixels of the object that is wanted, and depth.
-It learns in rooms of the split `train`; every fifth of the time it is measured in rooms of `val`.
+It learns in rooms of the split `train`, for so many minutes of processor time; every fifth of them
+it is measured in rooms of `val`.
 """
 
 from __future__ import annotations
@@ -26,7 +27,6 @@ from stable_baselines3.common.vec_env import DummyVecEnv
 import sailenv_ros.gym  # noqa: F401  # registers the environments
 
 SIDE, REACH_M = 20, 5.0
-EPISODES = 20
 
 Policy = Callable[[NDArray[np.float32]], int]
 
@@ -81,10 +81,12 @@ def scripted_search(seen: NDArray[np.float32]) -> int:
     return 0 if np.median(seen[1][mask]) * REACH_M < 1.0 and mask.sum() >= 4 else 1
 
 
-def evaluate(env: gymnasium.Env[Any, Any], policy: Policy) -> tuple[float, float, float]:
+def evaluate(
+    env: gymnasium.Env[Any, Any], policy: Policy, episodes: int
+) -> tuple[float, float, float]:
     """Return mean reward of an episode, share of success, and centred share or SPL."""
     rewards, successes, thirds = [], [], []
-    for number in range(EPISODES):
+    for number in range(episodes):
         seen, info = env.reset(seed=1000 + number)
         total, over = 0.0, False
         while not over:
@@ -99,21 +101,21 @@ def evaluate(env: gymnasium.Env[Any, Any], policy: Policy) -> tuple[float, float
 class Curve(BaseCallback):
     """Measures the policy in unseen rooms now and then; ends the learning when time is over."""
 
-    def __init__(self, env: gymnasium.Env[Any, Any], minutes: float) -> None:
+    def __init__(self, env: gymnasium.Env[Any, Any], minutes: float, episodes: int) -> None:
         super().__init__()
-        self._env, self._minutes = env, minutes
-        self._learned_s, self._last, self._points = 0.0, time.perf_counter(), 0
+        self._env, self._minutes, self._episodes = env, minutes, episodes
+        self._learned_s, self._last, self._points = 0.0, time.process_time(), 0
 
     def _on_step(self) -> bool:
-        now = time.perf_counter()
+        now = time.process_time()
         self._learned_s += now - self._last
         if self._learned_s >= (self._points + 1) * self._minutes * 12.0:
             self._points += 1
             show(
-                f"PPO, {self.num_timesteps} steps, {self._learned_s / 60.0:.1f} min",
-                evaluate(self._env, lambda seen: int(self.model.predict(seen)[0])),
+                f"PPO, {self.num_timesteps} steps, {self._learned_s / 60.0:.1f} processor min",
+                evaluate(self._env, lambda seen: int(self.model.predict(seen)[0]), self._episodes),
             )
-        self._last = time.perf_counter()
+        self._last = time.process_time()
         return self._points < 5
 
 
@@ -130,6 +132,7 @@ def main() -> None:
     parser.add_argument("task", choices=("Track", "Search"))
     parser.add_argument("--minutes", type=float, default=20.0)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--episodes", type=int, default=20)
     parser.add_argument("--rooms", type=int, default=4)
     arguments = parser.parse_args()
     task, rooms = arguments.task, arguments.rooms
@@ -140,15 +143,16 @@ def main() -> None:
     print("stable_baselines3.common.env_checker.check_env: no errors", flush=True)
     raw.close()
     unseen = make(task, "val", rooms)
-    random = np.random.default_rng(arguments.seed)
+    random, episodes = np.random.default_rng(arguments.seed), arguments.episodes
+    script = scripted_track if task == "Track" else scripted_search
     actions = 5 if task == "Track" else 6
-    show("random", evaluate(unseen, lambda seen: int(random.integers(actions))))
-    show("scripted", evaluate(unseen, scripted_track if task == "Track" else scripted_search))
+    show("random", evaluate(unseen, lambda seen: int(random.integers(actions)), episodes))
+    show("scripted", evaluate(unseen, script, episodes))
     learning = DummyVecEnv([lambda: make(task, "train", rooms) for _ in range(8)])
     model = PPO(
         "MlpPolicy", learning, n_steps=256, batch_size=256, seed=arguments.seed, device="cpu"
     )
-    model.learn(10_000_000, callback=Curve(unseen, arguments.minutes))
+    model.learn(10_000_000, callback=Curve(unseen, arguments.minutes, episodes))
     for env in (judged, unseen, learning):
         env.close()
 
