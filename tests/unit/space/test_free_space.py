@@ -255,3 +255,18 @@ def test_bodies_that_cannot_be_are_refused(wrong: dict[str, float]) -> None:
     """Each in a sentence that names what is wrong."""
     with pytest.raises(InvalidRequest, match=next(iter(wrong))):
         BodySize(**wrong)
+
+
+def test_distances_to_several_places_are_those_to_the_nearest() -> None:
+    space = map_free_space(
+        solids(FLOOR, BoxShape(half_extents_m=(0.1, 0.8, 0.5), centre_m=(0.0, 0.3, 0.5))), BODY
+    )
+    cells = [tuple(cell) for cell in np.argwhere(space.regions == 1)[[3, 400, -5]].tolist()]
+    goals = np.zeros(space.cells.shape, bool)
+    for cell in cells:
+        goals[cell] = True
+    goals |= space.cells == OCCUPIED  # which count for nothing
+    each = [space.distances_m(space.position_of(*cell)) for cell in cells]
+    assert (space.distances_to_m(goals) == np.minimum.reduce(each)).all()
+    with pytest.raises(InvalidRequest, match="free"):
+        space.distances_to_m(space.cells == OCCUPIED)
