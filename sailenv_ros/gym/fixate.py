@@ -14,7 +14,8 @@ from typing_extensions import Unpack
 from sailenv_ros.gym.eye import Look
 from sailenv_ros.gym.ground import random_cell
 from sailenv_ros.gym.point_nav import EYE_M, TURN
-from sailenv_ros.gym.room_env import Info, RoomEnv, RoomSettings
+from sailenv_ros.gym.room_env import Info, RoomEnv
+from sailenv_ros.gym.room_settings import RoomSettings
 from sailenv_ros.gym.walker import Walker
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.validation import Bounds

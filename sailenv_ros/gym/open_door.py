@@ -20,7 +20,8 @@ from sailenv_ros.gym.eye import Look
 from sailenv_ros.gym.ground import random_cell
 from sailenv_ros.gym.point_nav import EYE_M, NEAR, STRIDE, TURN
 from sailenv_ros.gym.room import DOOR_STEPS, Door
-from sailenv_ros.gym.room_env import Info, RoomEnv, RoomSettings
+from sailenv_ros.gym.room_env import Info, RoomEnv
+from sailenv_ros.gym.room_settings import RoomSettings
 from sailenv_ros.gym.walker import Walker
 from sailenv_ros.types.geometry import Pose, invert
 

@@ -18,7 +18,8 @@ from sailenv_ros.errors import InvalidState, UnknownName
 from sailenv_ros.extras import need
 from sailenv_ros.gym.point_nav import PointNavEnv
 from sailenv_ros.gym.room import OwnObject
-from sailenv_ros.gym.room_env import Arrays, Info, RoomEnv, RoomSettings
+from sailenv_ros.gym.room_env import Arrays, Info, RoomEnv
+from sailenv_ros.gym.room_settings import RoomSettings
 from sailenv_ros.types.validation import Bounds
 
 need("pettingzoo", "several agents in one room")

@@ -18,7 +18,8 @@ from sailenv_ros.gym.eye import Eye, Look
 from sailenv_ros.gym.ground import random_cell
 from sailenv_ros.gym.moved_things import move_things
 from sailenv_ros.gym.point_nav import EYE_M, TURN
-from sailenv_ros.gym.room_env import Info, RoomEnv, RoomSettings
+from sailenv_ros.gym.room_env import Info, RoomEnv
+from sailenv_ros.gym.room_settings import RoomSettings
 from sailenv_ros.gym.walker import Walker
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at

@@ -13,11 +13,11 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
-from typing_extensions import TypedDict
 
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.gym.eye import Eye, Look
 from sailenv_ros.gym.room import OwnObject, Room, RoomOrder
+from sailenv_ros.gym.room_settings import FAST_PICTURE
 from sailenv_ros.gym.room_store import shared_rooms
 from sailenv_ros.gym.room_table import KINDS, room_names
 from sailenv_ros.native.library import thread_count
@@ -30,7 +30,7 @@ from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.snapshot import Observation
 from sailenv_ros.types.validation import Bounds, checked_flag
 
-__all__ = ["Arrays", "Info", "RoomEnv", "RoomSettings"]
+__all__ = ["STEP_NS", "Arrays", "Info", "RoomEnv"]
 
 Arrays: TypeAlias = dict[str, NDArray[Any]]
 """An observation by the names of the spaces."""
@@ -40,32 +40,7 @@ Info: TypeAlias = dict[str, Any]
 STEP_NS = round(8e9 / STEPS_PER_SECOND)
 """Simulated time of one step: eight steps of physics, 1/30 s [ns]."""
 
-FAST_PICTURE = PictureSettings(smooth_edges=False)
-"""Pictures unless told otherwise: edges are not smoothed, which takes longer than all else."""
-
 THREADS = Bounds(least=1, most=256, whole=True)
-
-NO_PLACES: Mapping[int, NDArray[np.float64]] = {}
-
-
-class RoomSettings(TypedDict, total=False):
-    """Settings of every environment; see `RoomEnv`."""
-
-    views: Views
-    width: int
-    height: int
-    vertical_fov_deg: float
-    intrinsics: CameraIntrinsics | None
-    picture: PictureSettings
-    most_depth_m: float
-    retina: tuple[int, int] | None
-    split: str
-    rooms: int | Sequence[str]
-    kinds: Sequence[str]
-    baked: bool
-    discrete: bool
-    threads: int
-    render_mode: str | None
 
 
 class RoomEnv(gymnasium.Env[Arrays, Any]):
@@ -316,7 +291,7 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
 
     def _places(self) -> Mapping[int, NDArray[np.float64]]:
         """Return the poses (4, 4) of what was moved, by rows of the room's snapshot."""
-        return NO_PLACES
+        return {}
 
     def _own_objects(self, name: str) -> tuple[OwnObject, ...]:
         """Return own objects in a room."""

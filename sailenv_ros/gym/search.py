@@ -18,7 +18,8 @@ from sailenv_ros.gym.errands import Errand
 from sailenv_ros.gym.eye import Look
 from sailenv_ros.gym.ground import near_boxes, random_cell, way_length_m
 from sailenv_ros.gym.point_nav import EYE_M, NEAR, STRIDE, TURN
-from sailenv_ros.gym.room_env import Info, RoomEnv, RoomSettings
+from sailenv_ros.gym.room_env import Info, RoomEnv
+from sailenv_ros.gym.room_settings import RoomSettings
 from sailenv_ros.gym.room_store import shared_rooms
 from sailenv_ros.gym.walker import Walker
 from sailenv_ros.types.geometry import Pose
