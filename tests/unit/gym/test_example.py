@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-EXAMPLE = Path(__file__).resolve().parents[3] / "examples" / "17_acting.py"
+EXAMPLE = Path(__file__).resolve().parents[3] / "examples" / "18_acting.py"
 
 
 def test_the_scripted_agent_keeps_the_object_centred(

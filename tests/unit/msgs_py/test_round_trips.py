@@ -161,10 +161,11 @@ PICTURES = st.builds(
     PictureSettings,
     tone_curve=st.sampled_from(["filmic", "linear"]),
     smooth_edges=st.booleans(),
+    read_out=st.sampled_from(["down", "up"]),
     depth_sensor=st.sampled_from(depth_sensor_names()),
-    supersampling=st.integers(1, 4),
     **{
-        name: st.floats(at.least, at.most) for name, at in LIMITS.items() if name != "supersampling"
+        name: (st.integers if at.whole else st.floats)(at.least, at.most)
+        for name, at in LIMITS.items()
     },
 )
 PINHOLES = st.builds(

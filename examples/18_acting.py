@@ -3,7 +3,7 @@
 It turns towards the object's pixels in the view `instance`, one direction at a time, and to the
 left while it sees none. Replace `policy` by what you have trained.
 
-    python examples/17_acting.py [--rooms SCENE ...] [--episodes N] [--picture FILE.png]
+    python examples/18_acting.py [--rooms SCENE ...] [--episodes N] [--picture FILE.png]
 """
 
 import argparse
