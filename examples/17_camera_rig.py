@@ -58,6 +58,7 @@ with Simulation("optical", mode="lockstep", agent=head) as simulation:
 
 panes = []
 for frame in frames.values():
+    assert frame.info is not None, "frames of a simulation tell their scene"
     view = "rgb" if "rgb" in frame else "depth"
     lens = frame.camera.intrinsics
     picture = view_picture(
