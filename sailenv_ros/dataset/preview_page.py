@@ -184,7 +184,7 @@ def _picture(view: str, values: NDArray[Any], table: CategoryTable) -> str:
     colours = view_picture(view, values, table=table)
     height, width = colours.shape[:2]
     most = PICTURE_WIDTH if view == "rgb" else OTHER_WIDTH
-    labels = view != "rgb" and not np.issubdtype(VIEWS[view].dtype, np.floating)
+    labels = VIEWS[view].is_label
     if width > most:
         method = cv2.INTER_NEAREST if labels else cv2.INTER_AREA
         size = most, max(1, round(height * most / width))

@@ -32,7 +32,7 @@ class DatasetSamples(Sequence[Sample]):
     dataset : Dataset
     format : {'numpy', 'torch'}
         ``numpy``: views as `VIEWS` says, category ids always as uint16. ``torch``: as tensors with
-        the channels first, ids as int32 (PyTorch hardly computes with uint16).
+        the channels first, ids and RAW data as int32 (PyTorch hardly computes with uint16).
 
     Raises
     ------
@@ -130,8 +130,8 @@ def _tensor(spec: ViewSpec | None, values: NDArray[Any]) -> Any:
     """Return a copy as a tensor of a type that PyTorch computes with."""
     import torch
 
-    is_id = spec is not None and spec.is_label and spec.dtype != np.bool_
-    tensor = torch.from_numpy(values.astype(np.int32 if is_id else values.dtype))
+    is_wide = spec is not None and np.uint16 in spec.dtypes
+    tensor = torch.from_numpy(values.astype(np.int32 if is_wide else values.dtype))
     # Making a batch copies anyway, and brings the values into this order then.
     return tensor.permute(2, 0, 1) if spec is not None and spec.channels > 1 else tensor
 

@@ -25,6 +25,7 @@ from sailenv_ros.types.camera import MIN_SIZE_PX, Camera, CameraIntrinsics
 from sailenv_ros.types.lessons import LessonState
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.snapshot import WorldSnapshot
+from sailenv_ros.types.views import LIT_VIEWS
 
 if TYPE_CHECKING:
     from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
@@ -107,7 +108,7 @@ class FrameMaker:
         world = self._scene.world
         snapshot = self._relighter.lit(
             world.snapshot(),
-            wanted="rgb" in views,
+            wanted=not LIT_VIEWS.isdisjoint(views),
             lockstep=self._lockstep,
             changed_ns=world.changed_ns,
         )
@@ -157,7 +158,8 @@ class FrameMaker:
             return
         specs = self._scene.agents.specs
         if specs:  # else there is nobody to be drawn for
-            views = ("rgb",) if any("rgb" in spec.views for spec in specs) else ("depth",)
+            lit = any(not LIT_VIEWS.isdisjoint(spec.views) for spec in specs)
+            views = ("rgb",) if lit else ("depth",)
             self.look(Camera(intrinsics=_SMALL), *views)
         give_back_freed_memory()  # what the scene of before had
 

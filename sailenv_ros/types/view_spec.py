@@ -10,13 +10,22 @@ import numpy as np
 __all__ = ["ImageCodec", "ViewDisplay", "ViewSource", "ViewSpec"]
 
 ViewSource: TypeAlias = Literal["lighting", "annotation", "geometry", "measurement", "motion"]
-"""Source of a view: the lit picture; arithmetic on depth and instance id, which all back ends
+"""Source of a view: light on the sensor; arithmetic on depth and instance id, which all back ends
 share; an attribute of the surface, which renderers write as it is; what a depth sensor makes of
 them; or arithmetic on a frame and the one that follows it, which no renderer makes
 (`sailenv_ros.frame.motion`)."""
 
 ViewDisplay: TypeAlias = Literal[
-    "colour", "depth", "category", "instance", "flow", "direction", "mask", "place", "displacement"
+    "colour",
+    "mosaic",
+    "depth",
+    "category",
+    "instance",
+    "flow",
+    "direction",
+    "mask",
+    "place",
+    "displacement",
 ]
 """Display of a view as a picture; `pictures.colours` has a function for each."""
 

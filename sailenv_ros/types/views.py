@@ -12,12 +12,14 @@ from types import MappingProxyType
 import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.types.bayer import BLACK_LEVEL, WHITE_LEVEL
 from sailenv_ros.types.listed_views import Views, listed_views
 from sailenv_ros.types.view_spec import ViewSource, ViewSpec
 
 __all__ = [
     "ALWAYS_MADE",
     "FIVE_VIEWS",
+    "LIT_VIEWS",
     "RENDERED_VIEWS",
     "VIEWS",
     "checked_views",
@@ -182,6 +184,15 @@ _SPECS = (
         png_per_unit=1000.0,
     ),
     ViewSpec(
+        name="raw",
+        dtype=np.dtype(np.uint16),
+        encoding="bayer_rggb16",
+        meaning="RAW data of the sensor behind a Bayer filter (RGGB), linear: "
+        f"{BLACK_LEVEL} is black, {WHITE_LEVEL} white",
+        display="mosaic",
+        source="lighting",
+    ),
+    ViewSpec(
         name="object_coords",
         dtype=np.dtype(np.float32),
         channels=3,
@@ -248,6 +259,10 @@ def view_spec(name: str) -> ViewSpec:
 def views_of(*sources: ViewSource) -> tuple[str, ...]:
     """Return the views that one of these sources makes, in the order of `VIEWS`."""
     return tuple(name for name, spec in VIEWS.items() if spec.source in sources)
+
+
+LIT_VIEWS = frozenset(views_of("lighting"))
+"""Views of light: a frame without them needs none."""
 
 
 def checked_views(names: Views, *, supported: Collection[str] | None = None) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.baked_light import SunEdges
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
-from sailenv_ros.types.views import RENDERED_VIEWS
+from sailenv_ros.types.views import LIT_VIEWS, RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.baked import SIZE, baked, chart, layer
 from tests.support.picture import linear
@@ -220,7 +220,7 @@ def test_a_change_of_lights_leaves_nothing_behind() -> None:
 
 def test_ground_truth_does_not_know_of_baked_light(render: Render) -> None:
     """Every other view is the same, to the byte, with and without it."""
-    views = [view for view in RENDERED_VIEWS if view != "rgb"]
+    views = [view for view in RENDERED_VIEWS if view not in LIT_VIEWS]
     box = model_of(box_mesh(0.5))
     things = [Thing(WALL, AHEAD), Thing(box, Pose((2.0, 0.3, 0.1)))]
     light = baked({1: chart(WALL, AHEAD)}, [layer(SUN, visible=1.0)])

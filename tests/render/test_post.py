@@ -17,7 +17,7 @@ from sailenv_ros.types.colour import srgb_from_linear
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment
 from sailenv_ros.types.picture_settings import LIMITS, PictureSettings, ToneCurve
-from sailenv_ros.types.views import RENDERED_VIEWS
+from sailenv_ros.types.views import LIT_VIEWS, RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     SUN,
@@ -86,7 +86,7 @@ def test_the_linear_curve_is_the_srgb_standard() -> None:
 def test_ground_truth_knows_nothing_of_the_picture(render: Render) -> None:
     """All other views are the same bytes with every setting on and off, asked together or alone."""
     before, after, past, now = two_instants()
-    truth = [name for name in RENDERED_VIEWS if name != "rgb"]
+    truth = [name for name in RENDERED_VIEWS if name not in LIT_VIEWS]
     seen = [
         render(after, replace(now, picture=settings), *names, past=(before, past))
         for settings in (OFF, ALL)

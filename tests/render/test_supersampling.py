@@ -17,7 +17,7 @@ from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment
 from sailenv_ros.types.picture_settings import PictureSettings
-from sailenv_ros.types.views import RENDERED_VIEWS
+from sailenv_ros.types.views import LIT_VIEWS, RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     Thing,
@@ -46,7 +46,7 @@ def test_ground_truth_stays_that_of_pixel_centres(
 ) -> None:
     """All other views are the same bytes with and without, beside a picture or without one."""
     before, after, past, now = two_instants()
-    truth = [name for name in RENDERED_VIEWS if name != "rgb"]
+    truth = [name for name in RENDERED_VIEWS if name not in LIT_VIEWS]
     views = [
         render(after, camera, *names, past=(before, past))
         for camera in (now, sampled(now, times, occlusion_strength=strength))

@@ -81,6 +81,8 @@ def _noise(view: str, intrinsics: CameraIntrinsics, noise: np.random.Generator) 
         return noise.choice(np.array([0, 3, 9], np.uint8), shape)
     if spec.dtype == np.uint8:
         return noise.integers(0, 256, shape).astype(np.uint8)
+    if view == "raw":
+        return noise.integers(0, 65536, shape).astype(np.uint16)
     values = noise.normal(3.0, 50.0, shape).astype(np.float32)
     values.reshape(-1)[:4] = [np.nan, np.nan if view == "flow" else np.inf, -0.0, 1e-42]
     return values

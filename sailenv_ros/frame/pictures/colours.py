@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.types.bayer import colours_of_cells
 from sailenv_ros.types.colour import srgb_from_linear
 from sailenv_ros.types.labels import CategoryTable, colour_instances
 from sailenv_ros.types.view_spec import ViewDisplay
@@ -25,6 +26,7 @@ __all__ = [
     "colour_flow",
     "colour_mask",
     "colour_places",
+    "developed_mosaic",
     "encoded_colour",
     "grey_depth",
     "view_picture",
@@ -207,6 +209,11 @@ def encoded_colour(colour: NDArray[Any]) -> Rgb:
     return np.asarray(np.rint(codes), np.uint8)
 
 
+def developed_mosaic(raw: NDArray[np.uint16]) -> Rgb:
+    """Show RAW data (H, W) by the colours of its cells of two by two pixels, linear to sRGB."""
+    return encoded_colour(np.maximum(colours_of_cells(raw), np.float32(0.0)))
+
+
 def _cubehelix() -> Rgb:
     """Return (256, 3): black to white through colours, brightness rising evenly.
 
@@ -229,6 +236,7 @@ _BLACK, _WHITE = np.zeros(3, np.uint8), np.full(3, 255, np.uint8)
 
 _DISPLAYS: Mapping[ViewDisplay, Callable[[NDArray[Any]], Rgb]] = {
     "colour": encoded_colour,
+    "mosaic": developed_mosaic,
     "instance": colour_instances,
     "flow": colour_flow,
     "direction": colour_directions,

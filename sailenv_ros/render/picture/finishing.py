@@ -25,7 +25,7 @@ from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
-from sailenv_ros.types.views import VIEWS, checked_views
+from sailenv_ros.types.views import LIT_VIEWS, VIEWS, checked_views
 
 __all__ = ["Arrays", "DrawingRenderer", "Timings"]
 
@@ -74,6 +74,9 @@ class DrawingRenderer(ABC):
         drawn = wanted
         if "measured_depth" in wanted:
             drawn |= MEASURED_FROM
+        lit = not wanted.isdisjoint(LIT_VIEWS)
+        if lit:
+            drawn |= {"rgb"}
         keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
         timings: Timings = {}
         with self._drawing_context():
@@ -81,15 +84,18 @@ class DrawingRenderer(ABC):
                 past = self._draw(previous, frozenset({"depth"}), {})["surface"]
                 previous = with_depth(previous, past)
             now = Observation(snapshot=snapshot, camera=camera, rows=rows)
-            apart = bool(samples) and "rgb" in wanted
+            apart = bool(samples) and lit
             arrays = self._draw(now, drawn - {"rgb"} if apart else drawn, timings)
             light = self._mean_light(samples, timings) if apart else None
         began = time.perf_counter()
         surface = arrays.pop("surface")
-        if "rgb" in wanted:
+        if lit:
             if light is None:
                 light = self._light_of(now, arrays, surface)
-            arrays["rgb"] = self._post.developed(light, snapshot, camera)
+            if "rgb" in wanted:
+                arrays["rgb"] = self._post.developed(light, snapshot, camera)
+            if "raw" in wanted:
+                arrays["raw"] = self._post.raw(light, snapshot, camera)
             timings["post"] = time.perf_counter() - began
             began = time.perf_counter()
         reach = reach_view(camera.intrinsics)

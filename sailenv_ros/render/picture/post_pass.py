@@ -1,11 +1,12 @@
 """From a lit picture to what an agent sees: occlusion, glass, bloom, noise, tone curve, JPEG.
 
-Radiance and surfaces come in, an 8-bit sRGB picture goes out. Everything happens on the
+Radiance and surfaces come in, an 8-bit sRGB picture or RAW data go out. Everything happens on the
 processor, on copies: ground truth never passes through here. What is off costs nothing.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.render.picture import ambient_occlusion, supersampling, tone_map
 from sailenv_ros.render.picture.optics import through_glass
+from sailenv_ros.render.picture.raw_data import raw_data
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.render.picture.tone import code_table
 from sailenv_ros.types.camera import Camera
@@ -104,8 +106,7 @@ class PostPass:
     def developed(self, light: Light, snapshot: WorldSnapshot, camera: Camera) -> NDArray[np.uint8]:
         """Return (H, W, 3) uint8: the sRGB picture of light; a fresh array."""
         settings = camera.picture
-        if settings.lateral_colour or settings.vignetting:
-            light = Light(through_glass(self.at_sensor(light), camera.intrinsics, settings))
+        light = self._through_glass(light, camera)
         if settings.bloom > 0.0 or settings.full_well > 0.0:
             # Light is spread and counted as it arrives at the sensor.
             radiance = sensor_light(
@@ -120,6 +121,22 @@ class PostPass:
             light.radiance, code_table(settings), light.shade, light.surface, threads=self._threads
         )
         return _from_jpeg(rgb, settings.jpeg_quality) if settings.jpeg_quality else rgb
+
+    def raw(self, light: Light, snapshot: WorldSnapshot, camera: Camera) -> NDArray[np.uint16]:
+        """Return (H, W) uint16: what the sensor counts of light; a fresh array."""
+        name, now_ns, settings = camera.name, snapshot.sim_time_ns, camera.picture
+        arriving = self.at_sensor(self._through_glass(light, camera))
+        if settings.bloom > 0.0:
+            quiet = replace(settings, full_well=0.0)
+            arriving = sensor_light(arriving, quiet, name, now_ns, threads=self._threads)
+        return raw_data(arriving, settings, name, now_ns)
+
+    def _through_glass(self, light: Light, camera: Camera) -> Light:
+        """Return light as the camera's lens leaves it."""
+        settings = camera.picture
+        if not settings.lateral_colour and not settings.vignetting:
+            return light
+        return Light(through_glass(self.at_sensor(light), camera.intrinsics, settings))
 
 
 def _from_jpeg(rgb: NDArray[np.uint8], quality: int) -> NDArray[np.uint8]:

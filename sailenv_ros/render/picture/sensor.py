@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from sailenv_ros.native.picture_kernels import gather_light
 from sailenv_ros.types.picture_settings import PictureSettings
 
-__all__ = ["normal_numbers", "sensor_light", "sensor_seed"]
+__all__ = ["noise_variance", "normal_numbers", "sensor_light", "sensor_seed"]
 
 
 def sensor_light(
@@ -56,12 +56,19 @@ def sensor_light(
     shot = read = 0.0
     normal: NDArray[np.float32] | None = None
     if settings.full_well > 0.0:
-        # Variance in units of the radiance that comes in: exposure gathers electrons, too.
-        electrons = settings.full_well * 2.0**settings.exposure
-        shot, read = 1.0 / electrons, (settings.read_noise / electrons) ** 2
+        shot, read = noise_variance(settings)
         normal = normal_numbers()
     seed = sensor_seed(name, sim_time_ns)
     return gather_light(radiance, settings.bloom, shot, read, seed, normal, threads=threads)
+
+
+def noise_variance(settings: PictureSettings) -> tuple[float, float]:
+    """Return a and b of a·x + b, the variance of radiance x as the scene's exposure left it.
+
+    Of settings whose `full_well` is not 0. Exposure gathers electrons, too.
+    """
+    electrons = settings.full_well * 2.0**settings.exposure
+    return 1.0 / electrons, (settings.read_noise / electrons) ** 2
 
 
 def sensor_seed(name: str, sim_time_ns: int) -> int:

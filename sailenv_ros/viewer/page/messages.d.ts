@@ -24,7 +24,7 @@ export interface ViewInfo {
   name: string;
   meaning: string;
   unit: string;
-  display: "colour" | "depth" | "category" | "instance" | "flow" | "direction" | "mask" | "place" | "displacement";
+  display: "colour" | "mosaic" | "depth" | "category" | "instance" | "flow" | "direction" | "mask" | "place" | "displacement";
   shown: boolean;
 }
 

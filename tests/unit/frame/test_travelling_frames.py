@@ -172,6 +172,6 @@ def test_a_frame_shows_itself_in_two_lines(frame: Frame) -> None:
     assert repr(frame) == (
         "<Frame eye in noise: frame 2, t = 0.033 s, Δt = 0.033 s, 32 × 24 px\n"
         " views: rgb, depth, category, instance, flow, flow_valid, occlusion, range, lens_valid, "
-        "normals, albedo, uv, metallic_roughness, measured_depth, object_coords>"
+        "normals, albedo, uv, metallic_roughness, measured_depth, raw, object_coords>"
     )
     assert repr(dataclasses.replace(frame, views={})).endswith("\n views: none>")

@@ -244,7 +244,7 @@ ENTRIES = {
         "version: 1\nagents: [{name: a, views: [rgb, dept]}]\n",
         "2:33: agents[0].views[1]: must be one of: rgb, depth, category, instance, flow, "
         "flow_valid, occlusion, range, lens_valid, normals, albedo, uv, metallic_roughness, "
-        "measured_depth, object_coords (did you mean 'depth'?), got 'dept'",
+        "measured_depth, raw, object_coords (did you mean 'depth'?), got 'dept'",
     ),
     "view named twice": (
         "version: 1\nagents: [{name: a, views: [rgb, rgb]}]\n",

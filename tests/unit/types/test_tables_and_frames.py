@@ -92,7 +92,15 @@ def test_a_frame_checks_its_views_and_freezes_them() -> None:
 def test_every_view_says_what_it_is() -> None:
     """Shape, type and encoding belong together."""
     assert FIVE_VIEWS == ("rgb", "depth", "category", "instance", "flow")
-    bytes_of = {"rgb8": 3, "8UC1": 1, "16UC1": 2, "32FC1": 4, "32FC2": 8, "32FC3": 12}
+    bytes_of = {
+        "rgb8": 3,
+        "8UC1": 1,
+        "16UC1": 2,
+        "bayer_rggb16": 2,
+        "32FC1": 4,
+        "32FC2": 8,
+        "32FC3": 12,
+    }
     for spec in VIEWS.values():
         assert spec.dtype.itemsize * spec.channels == bytes_of[spec.encoding], spec.name
         assert spec.meaning

@@ -19,6 +19,7 @@ from sailenv_ros.frame.pictures.colours import (
     grey_depth,
     view_picture,
 )
+from sailenv_ros.types.bayer import BLACK_LEVEL, WHITE_LEVEL
 from sailenv_ros.types.labels import Category, CategoryTable, colour_instances
 from sailenv_ros.types.views import VIEWS
 
@@ -92,6 +93,15 @@ def test_linear_colour_is_shown_by_its_srgb_codes() -> None:
     assert np.array_equal(shown[0, :, 1], codes)
     odd = np.array([[[-1.0, 7.0, NAN]]], np.float32)
     assert encoded_colour(odd).tolist() == [[[0, 255, 0]]]
+
+
+def test_raw_data_are_shown_by_the_colours_of_their_cells() -> None:
+    """Red and blue as they are, the mean green, in sRGB; also where the last cell is cut."""
+    light = np.array([[1.0, 0.25], [0.75, 0.0]])
+    levels = BLACK_LEVEL + (WHITE_LEVEL - BLACK_LEVEL) * light
+    raw = np.tile(np.rint(levels).astype(np.uint16), (3, 4))[:5, :7]
+    assert (view_picture("raw", raw, table=TABLE) == [255, 188, 0]).all()
+    assert not view_picture("raw", raw // 16, table=TABLE).any()
 
 
 def test_pictures_show_what_their_views_say() -> None:
