@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.render.picture.raw_data import raw_data
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.types.bayer import BLACK_LEVEL, WHITE_LEVEL, mosaic
@@ -17,7 +18,7 @@ from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment
 from sailenv_ros.types.picture_settings import PictureSettings
-from sailenv_ros.types.snapshot import WorldSnapshot
+from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
@@ -119,6 +120,16 @@ def test_the_picture_beside_it_is_of_the_same_exposure(
     alone = render(room(), eye(settings), "raw")
     np.testing.assert_array_equal(alone["raw"], views["raw"])
     np.testing.assert_array_equal(render(room(), eye(settings), "rgb")["rgb"], views["rgb"])
+
+
+def test_light_of_an_exposure_s_instants_is_averaged(renderer: RenderBackend) -> None:
+    """Alone, and with a picture beside it."""
+    instants = [
+        Observation(snapshot=plain((level, level, level)), camera=eye()) for level in (0.25, 0.75)
+    ]
+    for views in (("raw",), ("rgb", "raw")):
+        made = renderer.render(instants[0].snapshot, None, eye(), views, samples=instants).views
+        assert (made["raw"] == np.rint(of_light(np.array(0.5)))).all()
 
 
 def test_other_views_keep_their_bytes(render: Render) -> None:
