@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
+from functools import partial
 from itertools import count
 from types import MappingProxyType
 
 from sailenv_ros.assets.pictures import MAX_PICTURE_BYTES
-from sailenv_ros.errors import InvalidRequest, InvalidState
+from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.simulation.operations.edits import EditOperations
 from sailenv_ros.types.camera import CameraIntrinsics
@@ -20,6 +21,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import LightAttributes, LightType
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
+from sailenv_ros.viewer.frame_overlay import overlay_of
 from sailenv_ros.viewer.messages import (
     JointValues,
     Overlay,
@@ -27,7 +29,6 @@ from sailenv_ros.viewer.messages import (
     PlacedObject,
     UndoneStep,
 )
-from sailenv_ros.viewer.object_overlay import overlay_of
 from sailenv_ros.viewer.operation_commands import OPERATION_COMMANDS, call_operation
 from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
 from sailenv_ros.viewer.random_scenes import things_of_any_scene
@@ -60,17 +61,26 @@ async def probe(context: CommandContext, u: int, v: int, frame: int | None = Non
 
 @_commands.looks
 @served
-async def objects(
+async def overlay(
     context: CommandContext,
-    whole: int,
+    whole: int = 0,
     boxes: bool = False,
     space: bool = False,
+    circle: bool = False,
+    track: str = "",
     frame: int | None = None,
 ) -> Overlay:
-    """Return what is drawn over a frame of its objects; see `object_overlay`."""
+    """Return what is drawn over a frame, with the track of a mover if one is named."""
     seen = context.frame(frame)
+    movers = {mover.name: mover for mover in context.info.movers}
+    if track and track not in movers:
+        raise UnknownName("mover", track[:80], movers)
+    wanted = partial(overlay_of, boxes=boxes, space=space, whole=whole, circle=circle)
+    if track:
+        mover = movers[track]
+        wanted = partial(wanted, track=mover.waypoints, loop=mover.loop)
     # Drawing an object alone waits for the simulation.
-    return await asyncio.to_thread(overlay_of, seen, boxes=boxes, space=space, whole=whole)
+    return await asyncio.to_thread(wanted, seen)
 
 
 @_commands.looks

@@ -20,6 +20,7 @@ from sailenv_ros.frame.pictures.contact_sheet import contact_sheet
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.views import view_spec
 from sailenv_ros.viewer.messages import FileHead, FrameForAll, FrameForClient, ViewInfo
+from sailenv_ros.viewer.scene_json import lens_to_json
 
 __all__ = ["FrameMessages", "outline", "packed", "sheet_png", "view_png", "views_to_json"]
 
@@ -119,8 +120,7 @@ def _head_of(frame: Frame) -> str:
         "width": lens.width,
         "height": lens.height,
         "fov_deg": lens.vertical_fov_deg,
-        "lens": (lens.fx, lens.fy, lens.cx, lens.cy),
-        "camera_from_world": frame.camera.camera_from_world[:3].ravel().tolist(),
+        "lens": lens_to_json(lens),
         "position": frame.camera.pose.position_m,
         "rpy_deg": frame.camera.pose.rpy_deg,
         "lesson": "" if frame.lesson is None else str(frame.lesson),

@@ -13,7 +13,7 @@ from typing_extensions import NotRequired, TypedDict
 
 from sailenv_ros.types.joints import JointKind
 from sailenv_ros.types.view_spec import ViewDisplay
-from sailenv_ros.viewer.scene_messages import PoseValues, Vector3
+from sailenv_ros.viewer.scene_messages import LensValues, PoseValues, Segment, Vector3
 
 __all__ = [
     "BehaviourInfo",
@@ -140,8 +140,7 @@ class FrameForAll(TypedDict):
     width: int
     height: int
     fov_deg: float
-    lens: tuple[float, float, float, float]
-    camera_from_world: list[float]
+    lens: LensValues
     position: Vector3
     rpy_deg: Vector3
     lesson: str
@@ -259,15 +258,19 @@ class PixelValues(TypedDict):
 
 
 class Overlay(TypedDict):
-    """Drawn over a frame.
+    """Drawn over a frame [px].
 
-    ``boxes``: id, left, top, right, bottom [px]. ``edges``: id, and the ends u, v, u, v of each
-    edge. ``whole``: closed lines u, v, u, v, … [px].
+    ``boxes``: id, left, top, right, bottom. ``edges``: id, and pieces of lines. ``whole``: closed
+    lines u, v, u, v, …, as is ``circle``, the border of what the lens sees. ``waypoints``: number
+    from 1 and place; ``track``: the pieces between them.
     """
 
     boxes: list[tuple[int, int, int, int, int]]
-    edges: list[tuple[int, list[tuple[float, float, float, float]]]]
+    edges: list[tuple[int, list[Segment]]]
     whole: list[list[int]]
+    waypoints: list[tuple[int, float, float]]
+    track: list[Segment]
+    circle: list[list[int]]
 
 
 class PlacedObject(ObjectValues):

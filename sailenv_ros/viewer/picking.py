@@ -11,6 +11,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.validation import checked_integer
@@ -72,7 +73,7 @@ def values_at(frame: Frame, info: SceneInfo, u: int, v: int) -> PixelValues:
         elif display == "instance":
             names = (instance.name for instance in info.instances if instance.id == value)
             result |= {f"{view}_id": value, view: next(names, "")}
-        elif display == "depth" and math.isnan(value):
+        elif display == "depth" and math.isnan(value) and _is_seen(frame, u, v):
             result[view] = "near"
         else:
             result[view] = value if np.isfinite(value).all() else None
@@ -84,8 +85,15 @@ def standing_point(frame: Frame, u: int, v: int) -> tuple[float, float, float]:
 
     On what is seen there; a bit before it where that is upright; at a distance ahead where nothing
     near is seen.
+
+    Raises
+    ------
+    InvalidRequest
+        If the lens sees nothing in front of the camera there.
     """
     camera = frame.camera
+    if not np.isfinite(_optical(frame, u, v, 1.0)).all():
+        raise InvalidRequest("pixel", (u, v), "one where the lens sees what is in front of it")
     depth = frame["depth"]
     at = float(depth[v, u])
     if not math.isfinite(at) or at > FAR_M:
@@ -97,6 +105,10 @@ def standing_point(frame: Frame, u: int, v: int) -> tuple[float, float, float]:
         return _triple(point + np.array([0.0, 0.0, OFF_FLOOR_M, 0.0]))
     point[:3] += OFF_WALL_M * normal
     return _triple(point)
+
+
+def _is_seen(frame: Frame, u: int, v: int) -> bool:
+    return bool(np.isfinite(frame.camera.intrinsics.unit_rays_through((u, v))).all())
 
 
 def _optical(frame: Frame, u: int, v: int, depth: float) -> Vector:

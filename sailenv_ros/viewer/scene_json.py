@@ -16,6 +16,7 @@ from sailenv_ros.assets.skies import sky_files
 from sailenv_ros.assets.sources import installed_packs
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.behaviours import BehaviourKind, behaviour_kinds
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import UNLABELLED_CATEGORY
 from sailenv_ros.types.lights import Light
@@ -31,6 +32,7 @@ from sailenv_ros.viewer.messages import (
     PictureSetting,
 )
 from sailenv_ros.viewer.scene_messages import (
+    LensValues,
     LightNews,
     LookAtNews,
     MoverNews,
@@ -40,6 +42,7 @@ from sailenv_ros.viewer.scene_messages import (
 
 __all__ = [
     "behaviours_to_json",
+    "lens_to_json",
     "materials_to_json",
     "object_to_json",
     "picture_settings_to_json",
@@ -112,6 +115,20 @@ def scene_to_json(info: SceneInfo) -> SceneMessage:
             for agent in info.agents
         ],
         "movers": [_mover(mover) for mover in info.movers],
+    }
+
+
+def lens_to_json(intrinsics: CameraIntrinsics) -> LensValues:
+    """Return what a lens is."""
+    law = intrinsics.law
+    return {
+        "model": intrinsics.distortion_model,
+        "fx": intrinsics.fx,
+        "fy": intrinsics.fy,
+        "cx": intrinsics.cx,
+        "cy": intrinsics.cy,
+        "coefficients": list(zip(law.model.coefficients, law.coefficients, strict=False)),
+        "max_angle_deg": None if law.model.parallel else math.degrees(law.limit_rad),
     }
 
 

@@ -18,15 +18,20 @@ __all__ = [
     "CategoryNews",
     "EnvironmentNews",
     "InstanceNews",
+    "LensValues",
     "LightNews",
     "LookAtNews",
     "MoverNews",
     "PoseValues",
     "SceneMessage",
+    "Segment",
     "Vector3",
 ]
 
 Vector3 = tuple[float, float, float]
+
+Segment = tuple[float, float, float, float]
+"""Ends u, v, u, v of a straight piece of a line [px]."""
 
 
 class PoseValues(TypedDict):
@@ -105,6 +110,21 @@ class AgentNews(TypedDict):
     mover: str
     picture: dict[str, float | bool | str]
     look_at: LookAtNews | None
+
+
+class LensValues(TypedDict):
+    """A lens: lengths in px, coefficients by name, how far from the axis it sees.
+
+    The angle is null for parallel rays.
+    """
+
+    model: str
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    coefficients: list[tuple[str, float]]
+    max_angle_deg: float | None
 
 
 class MoverNews(TypedDict):

@@ -14,16 +14,18 @@ from sailenv_ros.errors import AddressInUse, InvalidRequest
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.frame_stream import FrameStream
-from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import light_named
 from sailenv_ros.types.picture_settings import NAMES, PictureSettings
 from sailenv_ros.viewer import ViewerServer
 from sailenv_ros.viewer.access_control import SECURITY_HEADERS
+from sailenv_ros.viewer.frame_overlay import seen_points
 from sailenv_ros.viewer.view_subscription import IN_FLIGHT
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
 from tests.support.viewer_socket import DEADLINE_S, ViewerSocket, connected, in_a_loop
 from tests.support.waiting import until
+from tests.viewer.conftest import SMALL
 
 VIEWS = ["rgb", "depth", "category", "instance", "flow"]
 
@@ -173,12 +175,10 @@ async def test_a_spawned_object_stands_where_it_was_pointed_at(server: ViewerSer
         await client.ask("watch", agent="debug_agent", views=["rgb"])
         head = await client.frame()
         made = await client.ask("spawn", asset="cube", frame=head["number"], u=80, v=110)
-        matrix = np.array(head["camera_from_world"]).reshape(3, 4)
+        pose = Pose.from_rpy_deg(head["position"], head["rpy_deg"])
         foot = np.array(made["position"]) - (0.0, 0.0, 0.5 * made["size"][2])
-        seen = matrix[:, :3] @ foot + matrix[:, 3]
-        fx, fy, cx, cy = head["lens"]
-        assert fx * seen[0] / seen[2] + cx == pytest.approx(80, abs=1)
-        assert fy * seen[1] / seen[2] + cy == pytest.approx(110, abs=1)
+        pixel = seen_points(Camera(intrinsics=SMALL, pose=pose), foot)
+        assert pixel == pytest.approx([80, 110], abs=1)
         changed = await client.ask("change_object", obj=made["id"], changes={"scale": 0.5})
         assert changed["scale"] == [0.5, 0.5, 0.5]
         moved = await client.ask(

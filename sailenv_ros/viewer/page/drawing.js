@@ -1,9 +1,7 @@
 // @ts-check
 // What is drawn over a picture, in pixels of its frame.
 
-import { placeOf } from "./lens.js";
-
-/** @import {FrameHead, MoverNews, Overlay} from "./messages.js" */
+/** @import {Overlay} from "./messages.js" */
 
 /** @typedef {CanvasRenderingContext2D} Pen */
 
@@ -40,12 +38,7 @@ export function drawObjects(pen, overlay, line) {
   }
   for (const [id, edges] of overlay.edges) {
     pen.strokeStyle = colourOf(id);
-    pen.beginPath();
-    for (const [u0, v0, u1, v1] of edges) {
-      pen.moveTo(u0, v0);
-      pen.lineTo(u1, v1);
-    }
-    pen.stroke();
+    pen.stroke(pieces(edges));
   }
   if (!overlay.whole.length) return;
   pen.setLineDash([5 * line, 4 * line]);
@@ -56,56 +49,57 @@ export function drawObjects(pen, overlay, line) {
 }
 
 /**
- * Where a point of the world is seen [px]; null behind the camera.
- * @param {FrameHead} head
- * @param {readonly [number, number, number]} point
- */
-function project(head, [x, y, z]) {
-  const [across, down, depth] = [0, 4, 8].map((row) => {
-    const [a = 0, b = 0, c = 0, d = 0] = head.camera_from_world.slice(row, row + 4);
-    return a * x + b * y + c * z + d;
-  });
-  if (across === undefined || down === undefined || depth === undefined || depth < 0.05) return null;
-  return placeOf(head.lens, across, down, depth);
-}
-
-/**
  * A mover's track.
  * @param {Pen} pen
- * @param {FrameHead} head
- * @param {MoverNews} mover
+ * @param {Overlay} overlay
  * @param {number} line
  */
-export function drawWaypoints(pen, head, { waypoints, loop }, line) {
-  const places = waypoints.map((waypoint) => project(head, waypoint.position));
+export function drawWaypoints(pen, { waypoints, track }, line) {
   pen.strokeStyle = "rgb(62 198 189 / 0.9)";
   pen.lineWidth = 2 * line;
   pen.setLineDash([6 * line, 5 * line]);
-  pen.beginPath();
-  places.forEach((place, at) => {
-    const before = at || !loop ? places[at - 1] : places.at(-1);
-    if (place && before) {
-      pen.moveTo(...before);
-      pen.lineTo(...place);
-    }
-  });
-  pen.stroke();
+  pen.stroke(pieces(track));
   pen.setLineDash([]);
   pen.font = `600 ${11 * line}px system-ui, sans-serif`;
   pen.textAlign = "center";
   pen.textBaseline = "middle";
-  places.forEach((place, at) => {
-    if (!place) return;
+  for (const [number, u, v] of waypoints) {
     pen.beginPath();
-    pen.arc(...place, 9 * line, 0, 2 * Math.PI);
+    pen.arc(u, v, 9 * line, 0, 2 * Math.PI);
     pen.fillStyle = "#0e7c74";
     pen.fill();
     pen.strokeStyle = "white";
     pen.lineWidth = 1.5 * line;
     pen.stroke();
     pen.fillStyle = "white";
-    pen.fillText(String(at + 1), ...place);
-  });
+    pen.fillText(String(number), u, v);
+  }
+}
+
+/**
+ * The border of what the lens sees.
+ * @param {Pen} pen
+ * @param {Overlay} overlay
+ * @param {number} line
+ */
+export function drawCircle(pen, { circle }, line) {
+  if (!circle.length) return;
+  pen.strokeStyle = "#3ec6bd";
+  pen.lineWidth = 2 * line;
+  pen.stroke(closedLines(circle));
+}
+
+/** @param {Overlay["track"]} segments */
+function pieces(segments) {
+  const path = new Path2D();
+  let [u, v] = [NaN, NaN];
+  for (const [u0, v0, u1, v1] of segments) {
+    // One line where they meet, or dashes would begin anew.
+    if (u0 !== u || v0 !== v) path.moveTo(u0, v0);
+    path.lineTo(u1, v1);
+    [u, v] = [u1, v1];
+  }
+  return path;
 }
 
 /** @param {readonly (readonly number[])[]} lines */

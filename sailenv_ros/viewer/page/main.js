@@ -9,7 +9,7 @@ import { LightPanel } from "./light_panel.js";
 import { Link } from "./link.js";
 import { LookSelect } from "./look_select.js";
 import { ObjectPanel } from "./object_panel.js";
-import { followObjects } from "./overlay.js";
+import { followOverlay } from "./overlay.js";
 import { PathPanel } from "./path_panel.js";
 import { PicturePanel } from "./picture_panel.js";
 import { Pointer } from "./pointer.js";
@@ -37,7 +37,7 @@ const walker = new Walker(store, actions, stage);
 new Bar(store, actions);
 new LookSelect(store, actions);
 new Pointer(store, actions, stage, walker);
-followObjects(store, actions);
+followOverlay(store, actions);
 tabs([
   new ViewPanel(store, actions), new ObjectPanel(store, actions), new AddPanel(store, actions),
   new RoomPanel(store, actions), new LightPanel(store, actions), new PicturePanel(store, actions),

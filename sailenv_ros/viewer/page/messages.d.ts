@@ -235,8 +235,7 @@ export interface FrameHead {
   width: number;
   height: number;
   fov_deg: number;
-  lens: [number, number, number, number];
-  camera_from_world: number[];
+  lens: LensValues;
   position: [number, number, number];
   rpy_deg: [number, number, number];
   lesson: string;
@@ -249,6 +248,17 @@ export interface ViewOfFrame {
   name: string;
   mime: string;
   size: number;
+}
+
+/** A lens: lengths in px, coefficients by name, how far from the axis it sees. */
+export interface LensValues {
+  model: string;
+  fx: number;
+  fy: number;
+  cx: number;
+  cy: number;
+  coefficients: ([string, number])[];
+  max_angle_deg: number | null;
 }
 
 /** Head of a binary message that answers a command by a file; its bytes follow. */
@@ -323,11 +333,14 @@ export interface RoomMade {
   scene: string;
 }
 
-/** Drawn over a frame. */
+/** Drawn over a frame [px]. */
 export interface Overlay {
   boxes: ([number, number, number, number, number])[];
   edges: ([number, ([number, number, number, number])[]])[];
   whole: number[][];
+  waypoints: ([number, number, number])[];
+  track: ([number, number, number, number])[];
+  circle: number[][];
 }
 
 /** An object that was set down; `held` if it was made static to stay where it is. */
@@ -519,7 +532,7 @@ export interface Commands {
   get_object: { values: { obj: number | string }; result: ObjectValues };
   lens: { values: { width: number; height: number; fov_deg: number }; result: null };
   move_object: { values: { obj: number | string; position?: number | readonly number[] | null; rotation?: number | readonly number[] | null; pose?: { position: readonly number[]; rotation: readonly number[] } | null; teleport?: boolean }; result: ObjectValues };
-  objects: { values: { whole: number; boxes?: boolean; space?: boolean; frame?: number | null }; result: Overlay };
+  overlay: { values: { whole?: number; boxes?: boolean; space?: boolean; circle?: boolean; track?: string; frame?: number | null }; result: Overlay };
   pause: { values: {}; result: null };
   place: { values: { obj: number; u: number; v: number; frame?: number | null }; result: PlacedObject };
   probe: { values: { u: number; v: number; frame?: number | null }; result: PixelValues };

@@ -2,8 +2,8 @@
 // The pictures: tiles of views, what is drawn over them, and which pixel a pointer is on.
 
 import { $, around, el } from "./dom.js";
-import { drawOutline, drawObjects, drawWaypoints } from "./drawing.js";
-import { moverOf, shownViews } from "./store.js";
+import { drawCircle, drawObjects, drawOutline, drawWaypoints } from "./drawing.js";
+import { shownViews } from "./store.js";
 
 /** @import {FrameHead} from "./messages.js" */
 /** @import {Store} from "./store.js" */
@@ -31,7 +31,7 @@ export class Stage {
     new ResizeObserver(() => this.#arrange()).observe(this.root);
     store.on(["hello"], ({ hello }) => this.#offer((hello?.views ?? []).map(({ name }) => name)));
     store.on(["hello", "views"], () => this.#arrange());
-    store.on(["frame", "overlay", "scene", "agent", "tab", "pathAlways"], () => this.#drawOver());
+    store.on(["frame", "overlay"], () => this.#drawOver());
   }
 
   /** Height of the large picture in the page [px]. */
@@ -131,12 +131,11 @@ export class Stage {
     bitmap.close();
   }
 
-  /** Draw what lies over the pictures: objects, the selected one's outline, the waypoints. */
+  /** Draw what lies over the pictures: objects, the selected one's outline, image circle, waypoints. */
   #drawOver() {
     const { state } = this.#store;
     const { frame, overlay, views } = state;
     if (!frame) return;
-    const mover = state.tab === "Path" || state.pathAlways ? moverOf(state) : undefined;
     for (const view of shownViews(state)) {
       const over = this.#byView.get(view)?.over;
       const pen = over?.getContext("2d");
@@ -155,7 +154,8 @@ export class Stage {
       const large = view === views.main;
       if (large && overlay) drawObjects(pen, overlay, line);
       drawOutline(pen, frame.outline ?? [], large ? line : line / 2);
-      if (large && mover) drawWaypoints(pen, frame, mover, line);
+      if (overlay) drawCircle(pen, overlay, large ? line : line / 2);
+      if (large && overlay) drawWaypoints(pen, overlay, line);
     }
   }
 

@@ -18,6 +18,7 @@ const OVERLAYS = [
   { key: "boxes", label: "boxes", title: "The box around what is visible of each object" },
   { key: "space", label: "boxes in space", title: "The oriented box of each object" },
   { key: "whole", label: "whole object", title: "The outline of the object under the pointer, also of what is hidden" },
+  { key: "circle", label: "image circle", title: "The border of what the lens sees" },
 ];
 
 export class ViewPanel {
@@ -29,6 +30,7 @@ export class ViewPanel {
   #shown = el("div", { id: "shown-views" });
   #stages = el("div", { class: "stages", id: "stages" });
   #camera = el("dl", { class: "values", id: "camera" });
+  #lens = el("dl", { class: "values", id: "lens" });
   #refreshed = 0;
 
   /**
@@ -47,6 +49,7 @@ export class ViewPanel {
       section("Over the picture", objects),
       section("Seen now", this.#legend),
       section("Camera", this.#camera),
+      section("Lens", this.#lens),
       section("Time of a frame", this.#stages),
     );
     this.#showPixel(store.state);
@@ -96,6 +99,7 @@ export class ViewPanel {
     this.#refreshed = now;
     this.#showLegend(frame);
     this.#showCamera(frame);
+    this.#showLens(frame);
     this.#showStages(frame.timings_ms);
   }
 
@@ -148,6 +152,19 @@ export class ViewPanel {
         ["frame", `${head.sequence} of ${head.agent}`],
       ]),
     );
+  }
+
+  /** @param {FrameHead} head */
+  #showLens({ lens }) {
+    /** @type {[string, string][]} */
+    const rows = [
+      ["model", lens.model],
+      ["fx, fy", `${fixed(lens.fx, 3)}, ${fixed(lens.fy, 3)} px`],
+      ["cx, cy", `${fixed(lens.cx, 3)}, ${fixed(lens.cy, 3)} px`],
+      ...lens.coefficients.map(([name, value]) => /** @type {[string, string]} */ ([name, String(value)])),
+    ];
+    if (lens.max_angle_deg !== null) rows.push(["sees up to", `${fixed(lens.max_angle_deg, 2)}° off the axis`]);
+    this.#lens.replaceChildren(...pairs(rows));
   }
 
   /** @param {Record<string, number>} timings */

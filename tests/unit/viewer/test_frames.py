@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -86,6 +87,20 @@ def test_what_does_not_exist_is_told_as_such() -> None:
     assert values_at(frame, info_with("box"), 0, 0)["depth"] is None
     assert values_at(frame, info_with("box"), 0, 0)["flow"] is None
     assert values_at(frame, info_with("box"), 1, 0)["depth"] == "near"
+
+
+def test_beside_the_image_circle_nothing_is_told_or_placed() -> None:
+    """A pixel that sees nothing is not near, and nothing can stand there."""
+    lens = CameraIntrinsics(
+        width=WIDTH, height=HEIGHT, fx_px=4.0, fy_px=4.0, max_angle_deg=60.0,
+        distortion_model="equidistant", distortion=(0.0, 0.0, 0.0, 0.0),
+    )  # fmt: skip
+    views = {"depth": np.full((HEIGHT, WIDTH), math.nan, np.float32)}
+    frame = replace(frame_of(**views), camera=Camera(intrinsics=lens))
+    assert values_at(frame, info_with("box"), 0, 0)["depth"] is None
+    assert values_at(frame, info_with("box"), 6, 4)["depth"] == "near"
+    with pytest.raises(InvalidRequest, match="lens sees"):
+        standing_point(frame, 0, 0)
 
 
 @pytest.mark.parametrize(
