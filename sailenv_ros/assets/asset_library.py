@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable, Mapping
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.errors import NameTaken, UnknownName
+from sailenv_ros.scene.knowledge import OpenNames
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import Asset, Model
 
-__all__ = ["AssetLibrary", "AssetSource"]
+__all__ = ["AssetLibrary", "AssetSource", "OpenSource"]
 
 
 class AssetSource(Protocol):
@@ -33,6 +34,34 @@ class AssetSource(Protocol):
         AssetError
             If it cannot be used.
         """
+        ...
+
+
+@runtime_checkable
+class OpenSource(Protocol):
+    """A source with more names than can be listed: it makes what a name describes."""
+
+    @property
+    def display_names(self) -> Mapping[str, str]:
+        """Nothing: its names are not listed."""
+        ...
+
+    def speaks_of(self, name: str) -> bool:
+        """Return whether a name has the form of those of this source."""
+        ...
+
+    def load(self, name: str) -> Asset:
+        """Make the asset of a name; the same object while it is in use.
+
+        Raises
+        ------
+        UnknownName, AssetError
+            If there is none of that name, or it cannot be made.
+        """
+        ...
+
+    def problem(self, name: str) -> UnknownName | None:
+        """Return why there is no asset of a name; None if there is one. Makes nothing."""
         ...
 
 
@@ -55,7 +84,10 @@ class AssetLibrary:
         self._name_of: dict[str, str] = {}
         self._loaded: dict[str, Asset] = {}
         self._lock = threading.Lock()
+        self._open: list[OpenSource] = []
         for source in (Primitives(),) if sources is None else sources:
+            if isinstance(source, OpenSource):
+                self._open.append(source)
             for name, display_name in source.display_names.items():
                 self._add(name, display_name, source)
 
@@ -65,9 +97,9 @@ class AssetLibrary:
         return tuple(self._source_of)
 
     @property
-    def all_names(self) -> tuple[str, ...]:
-        """Catalogue names and display names: all that `get` takes."""
-        return tuple(self._name_of)
+    def all_names(self) -> OpenNames:
+        """Catalogue names and display names; all that `get` takes is in it."""
+        return OpenNames(self._name_of, self._fault_of)
 
     @property
     def display_names(self) -> Mapping[str, str]:
@@ -83,9 +115,15 @@ class AssetLibrary:
         UnknownName
             If no asset has that name.
         """
-        if not isinstance(name, str) or name not in self._name_of:
+        if isinstance(name, str) and name in self._name_of:
+            return self._name_of[name]
+        source = self._open_source(name)
+        if source is None:
             raise UnknownName("asset", name, self._name_of)
-        return self._name_of[name]
+        problem = source.problem(name)
+        if problem is not None:
+            raise problem
+        return name
 
     def get(self, name: str) -> Asset:
         """Return an asset; the same object each time.
@@ -103,6 +141,8 @@ class AssetLibrary:
             If it cannot be loaded.
         """
         name = self.canonical(name)
+        if name not in self._source_of:
+            return self.source(name).load(name)  # which keeps what is in use
         with self._lock:
             if name not in self._loaded:
                 self._loaded[name] = self._source_of[name].load(name)
@@ -119,11 +159,11 @@ class AssetLibrary:
         name = self.canonical(name)
         with self._lock:
             loaded = self._loaded.get(name)
-        return loaded or self._source_of[name].load(name)
+        return loaded or self.source(name).load(name)
 
     def category_of(self, name: str) -> str:
         """Return the category of an asset; empty if there is none of that name."""
-        return self.peek(name).category if name in self.all_names else ""
+        return self.peek(name).category if self.has(name) else ""
 
     def drawn_model(self, name: str) -> Model:
         """Return what is drawn of an instance by its ``asset``; keeps none that was not in use.
@@ -138,7 +178,10 @@ class AssetLibrary:
         UnknownName, AssetError
             As `get`, also if the asset has no such part.
         """
-        whole, mark, wanted = name.partition(PART_MARK)
+        if name in self._name_of or not self.has(name):
+            whole, mark, wanted = name.partition(PART_MARK)
+        else:  # of a piece that opens, a part may be an asset itself
+            whole, mark, wanted = name, "", ""
         asset = self.peek(whole)
         if not mark:
             return asset.body_model
@@ -155,7 +198,14 @@ class AssetLibrary:
         UnknownName
             If no asset has that name.
         """
-        return self._source_of[self.canonical(name)]
+        name = self.canonical(name)
+        found = self._source_of.get(name) or self._open_source(name)
+        assert found is not None  # as it has a name
+        return found
+
+    def has(self, name: str) -> bool:
+        """Return whether `get` takes a name."""
+        return name in self._name_of or self._fault_of(name) == ""
 
     def add(self, asset: Asset) -> None:
         """Add an asset that is there already, e.g. one that a user uploaded.
@@ -174,13 +224,27 @@ class AssetLibrary:
         What was added by `add`, or is in use, stays as it is; a name that is taken is left out.
         """
         with self._lock:
-            for source in sources:
+            renewed = tuple(sources)
+            self._open = [source for source in renewed if isinstance(source, OpenSource)]
+            for source in renewed:
                 for name, display_name in source.display_names.items():
                     if name not in self._source_of:
                         if display_name not in self._name_of:
                             self._add(name, display_name, source)
                     elif not isinstance(self._source_of[name], _Ready):
                         self._source_of[name] = source
+
+    def _fault_of(self, name: str) -> str | None:
+        source = self._open_source(name)
+        if source is None:
+            return None
+        problem = source.problem(name)
+        return "" if problem is None else str(problem)
+
+    def _open_source(self, name: object) -> OpenSource | None:
+        if not isinstance(name, str):
+            return None
+        return next((source for source in self._open if source.speaks_of(name)), None)
 
     def _add(self, name: str, display_name: str, source: AssetSource) -> None:
         aliases = dict.fromkeys((name, display_name))

@@ -29,7 +29,7 @@ class ObjectFit:
 
     def __init__(self, library: AssetLibrary) -> None:
         self._library = library
-        self._known = frozenset(library.all_names)
+        self._known = library.all_names
 
     def __call__(self, entry: Mapping[str, Any]) -> Diagnostics:
         """Yield what does not fit; keep silent about an asset that is unknown.

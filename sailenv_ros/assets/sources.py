@@ -1,9 +1,10 @@
-"""Everything that assets come from on this machine: solids, the standard pack, the user's packs."""
+"""Everything that assets come from on this machine: solids, families of pieces, packs."""
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Iterable, Mapping, Sequence
+from importlib import import_module
 from types import MappingProxyType
 
 from sailenv_ros.assets.asset_library import AssetSource
@@ -15,6 +16,9 @@ from sailenv_ros.errors import AssetError
 from sailenv_ros.types.model import Asset
 
 __all__ = ["BUILD_COMMAND", "UnbuiltPack", "installed_packs", "installed_sources"]
+
+OPEN_SOURCES = ("sailenv_content.families.source:FamilySource",)
+"""Sources that make what a name describes, as ``module:name``: content knows this package."""
 
 _log = logging.getLogger(__name__)
 
@@ -86,4 +90,9 @@ def installed_sources(packs: Sequence[AssetPack] | None = None) -> tuple[AssetSo
     packs = installed_packs() if packs is None else packs
     built = [pack for pack in packs if pack.folder == standard_pack_folder()]
     unbuilt = UnbuiltPack(built[0].content.missing if built else None)
-    return (Primitives(), unbuilt, *packs)
+    return (Primitives(), unbuilt, *_open_sources(), *packs)
+
+
+def _open_sources() -> tuple[AssetSource, ...]:
+    named = (name.split(":") for name in OPEN_SOURCES)
+    return tuple(getattr(import_module(module), name)() for module, name in named)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-__all__ = ["Diagnostics", "SceneKnowledge"]
+__all__ = ["Diagnostics", "OpenNames", "SceneKnowledge"]
 
 Diagnostics: TypeAlias = Iterable[tuple[tuple[str | int, ...], str]]
 """Paths inside an entry, each with a sentence that says what is wrong there."""
@@ -18,6 +18,37 @@ def _no_camera_errors(rule: str, settings: Mapping[str, Any]) -> Diagnostics:
 
 def _no_errors(entry: Mapping[str, Any]) -> Diagnostics:
     return ()
+
+
+class OpenNames(tuple[str, ...]):
+    """Names that are known: those that are listed, and others that follow a form.
+
+    Iterating yields those that are listed.
+
+    Parameters
+    ----------
+    names : iterable of str
+    fault_of : callable
+        ``fault_of(name)`` returns why there is nothing of a name that has the form; an empty text
+        if there is, and None of a name that does not have it.
+    """
+
+    _listed: frozenset[str]
+    _fault_of: Callable[[str], str | None]
+
+    def __new__(cls, names: Iterable[str], fault_of: Callable[[str], str | None]) -> OpenNames:
+        """Make a tuple of the names that are listed."""
+        made = super().__new__(cls, names)
+        made._listed, made._fault_of = frozenset(made), fault_of
+        return made
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether a name is known."""
+        return isinstance(name, str) and (name in self._listed or self._fault_of(name) == "")
+
+    def fault(self, name: str) -> str:
+        """Return what is wrong with a name that has the form; empty if nothing, or it has not."""
+        return self._fault_of(name) or ""
 
 
 @dataclass(frozen=True, kw_only=True)

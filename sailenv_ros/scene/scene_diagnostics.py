@@ -15,7 +15,7 @@ from pydantic_core import ErrorDetails
 
 from sailenv_ros.scene.field_types import FIELD_ERROR
 from sailenv_ros.scene.fields import BROKEN_RULE, SceneModel
-from sailenv_ros.scene.knowledge import SceneKnowledge
+from sailenv_ros.scene.knowledge import OpenNames, SceneKnowledge
 from sailenv_ros.scene.messages import nearest, shown, suggestion
 from sailenv_ros.scene.randomise.random_rules import drawn_names, random_categories_exist
 from sailenv_ros.scene.randomise.randomisation import Randomisation
@@ -162,7 +162,9 @@ def _unknown(
 ) -> Iterator[Diagnostic]:
     name = entry.get(key)
     if isinstance(name, str) and name not in known:
-        yield Diagnostic((*loc, key), f"there is no {key} {shown(name)}; {suggestion(name, known)}")
+        fault = known.fault(name) if isinstance(known, OpenNames) else ""
+        why = fault or suggestion(name, known)
+        yield Diagnostic((*loc, key), f"there is no {key} {shown(name)}; {why}")
 
 
 def _unknown_drawn(

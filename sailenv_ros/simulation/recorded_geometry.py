@@ -48,7 +48,7 @@ def recorded_geometry(info: SceneInfo, library: SceneLibrary | None = None) -> S
         if drawn is not None and drawn.instance.asset == instance.asset:
             whole = not instance.is_part and instance.id not in divided
             models[instance.id] = bodies[instance.name].model if whole else drawn.model
-        elif instance.asset.partition(PART_MARK)[0] in library.spawnables:
+        elif instance.asset.partition(PART_MARK)[0] in library.knowledge.assets:
             if instance.is_part or instance.id in divided:
                 models[instance.id] = library.drawn_model(instance.asset)
             else:

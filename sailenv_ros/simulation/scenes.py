@@ -46,6 +46,7 @@ from sailenv_ros.types.model import Asset, Model
 from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
+from sailenv_ros.world.opening_pieces import as_placed
 from sailenv_ros.world.world import World
 
 __all__ = ["SceneLibrary"]
@@ -258,8 +259,9 @@ class SceneLibrary:
         return self._assets.drawn_model(asset)
 
     def placement(
-        self, entry: Mapping[str, Any], pose: Pose, world: World, *, seed: int, start_s: float
-    ) -> Placement:
+        self, entry: Mapping[str, Any], pose: Pose, world: World, *, seed: int, start_s: float,
+        shut: bool = False,
+    ) -> Placement:  # fmt: skip
         """Check an object's description and make of it what a world can spawn.
 
         Parameters
@@ -267,13 +269,14 @@ class SceneLibrary:
         entry : mapping
             With the keys of an object in a scene file, but for those of its place.
         pose : Pose
-            Where it stands.
         world : World
             Its categories are those that the entry may name.
         seed : int
             Of its behaviours' generators.
         start_s : float
             Simulated time at which they start [s].
+        shut : bool
+            True keeps what opens of a piece in its body.
 
         Raises
         ------
@@ -284,14 +287,10 @@ class SceneLibrary:
         stock = self.materials.of(world.scene)
         known = replace(self._untrusted_context, categories=names)
         spec = checked_alone(entry, self._with_materials(known, stock)).placed(pose)
+        asset = self._assets.get(spec.asset)
+        placed = asset if shut else as_placed(spec, asset)
         return make_placement(
-            spec,
-            self._assets.get(spec.asset),
-            pose,
-            world.categories,
-            seed,
-            start_s=start_s,
-            materials=stock,
+            spec, placed, pose, world.categories, seed, start_s=start_s, materials=stock
         )
 
     def knowledge_of(self, scene: str) -> SceneKnowledge:

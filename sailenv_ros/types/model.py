@@ -15,6 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import AssetError
+from sailenv_ros.types.shapes import (
+    BoxShape,
+    CollisionShape,
+    ConvexShape,
+    CylinderShape,
+    SphereShape,
+    TriangleShape,
+)
 
 __all__ = [
     "Asset",
@@ -27,6 +35,7 @@ __all__ = [
     "Mesh",
     "Model",
     "ModelPart",
+    "MovingPart",
     "SphereShape",
     "TriangleShape",
 ]
@@ -190,57 +199,6 @@ class Model:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BoxShape:
-    """A box; `centre_m` and `orientation_xyzw` in the body frame."""
-
-    half_extents_m: tuple[float, float, float]
-    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    orientation_xyzw: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SphereShape:
-    """A ball; `centre_m` in the body frame."""
-
-    radius_m: float
-    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CylinderShape:
-    """A cylinder along the body's z axis; `centre_m` in the body frame."""
-
-    radius_m: float
-    height_m: float
-    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-
-
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
-class ConvexShape:
-    """The convex hull of points (N, 3) float64 in the body frame [m]."""
-
-    points: NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
-class TriangleShape:
-    """Triangles as they are; hollow, for static objects only.
-
-    Attributes
-    ----------
-    positions : (N, 3) float64
-        Vertices in the body frame [m].
-    triangles : (M, 3) int32
-    """
-
-    positions: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-
-
-CollisionShape: TypeAlias = BoxShape | SphereShape | CylinderShape | ConvexShape | TriangleShape
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class AssetPart:
     """Some meshes of an asset's model that are labelled as an object of their own.
 
@@ -287,6 +245,14 @@ class Asset:
         Named points in the body frame [m].
     parts : tuple of AssetPart
         No mesh belongs to two of them, and one at least to none: that is the body.
+    moving : tuple of MovingPart
+        What of it opens. `model` and `collision` have it too, closed: so the piece is drawn where
+        it moves freely, in one body.
+    still : Asset or None
+        The piece without `moving`, which carries that on joints where it stands still.
+    opens : bool
+        True for what moves on a joint of its piece: its light is that of moving objects, and what
+        lies behind it is lit.
 
     Raises
     ------
@@ -304,6 +270,9 @@ class Asset:
     tags: tuple[str, ...] = field(default=())
     keypoints: tuple[tuple[str, tuple[float, float, float]], ...] = ()
     parts: tuple[AssetPart, ...] = ()
+    moving: tuple[MovingPart, ...] = ()
+    still: Asset | None = None
+    opens: bool = False
 
     def __post_init__(self) -> None:
         taken = [place for part in self.parts for place in part.meshes]
@@ -329,3 +298,37 @@ class Asset:
     def _body_meshes(self) -> tuple[int, ...]:
         taken = {place for part in self.parts for place in part.meshes}
         return tuple(place for place in range(len(self.model.parts)) if place not in taken)
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class MovingPart:
+    """A part of a piece that turns or slides, with the joint that carries it.
+
+    Attributes
+    ----------
+    name : str
+        Unique in its piece, e.g. ``"left door"``.
+    asset : Asset
+        In the piece's own frame, where it is while the joint's position is 0.
+    type : {'hinge', 'slide'}
+    axis : (3,) tuple of float
+        Unit vector, in the piece's frame.
+    origin_m : (3,) tuple of float
+        A point of a hinge's axis [m].
+    limits : (2,) tuple of float
+        Least and greatest position [rad] or [m].
+    friction, effort : float
+        [N m] or [N].
+    damping : float
+        [N m s/rad] or [N s/m].
+    """
+
+    name: str
+    asset: Asset
+    type: Literal["hinge", "slide"]
+    axis: tuple[float, float, float]
+    origin_m: tuple[float, float, float]
+    limits: tuple[float, float]
+    friction: float = 1.0
+    effort: float = 100.0
+    damping: float = 1.0

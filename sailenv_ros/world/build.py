@@ -25,6 +25,7 @@ from sailenv_ros.types.model import Asset
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.mover_motion import WaypointTrack
+from sailenv_ros.world.opening_pieces import as_placed, moving_entries
 from sailenv_ros.world.placement import JointPlacement
 from sailenv_ros.world.world import World
 
@@ -65,6 +66,11 @@ def build_world(
         If something cannot be built; nothing is left then.
     """
     stock = {entry.name: assets.get(entry.asset) for entry in spec.objects}
+    visitors = spec.lesson_objects
+    opened = tuple(moving_entries(spec.objects, stock, visitors))
+    if opened:
+        spec = spec.model_copy(update={"objects": (*spec.objects, *opened)})
+        stock |= {entry.name: assets.get(entry.asset) for entry in opened}
     poses = arranged(spec.objects, stock, spec.room)
     own = [category.to_category() for category in spec.categories]
     table = CategoryTable([*categories.values(), *own])
@@ -81,7 +87,12 @@ def build_world(
             *(part for part in parts if part.joint is None),
             *(
                 make_placement(
-                    entry, stock[entry.name], poses[entry.name], table, seed, materials=found
+                    entry,
+                    as_placed(entry, stock[entry.name], visitors),
+                    poses[entry.name],
+                    table,
+                    seed,
+                    materials=found,
                 )
                 for entry in spec.objects
             ),

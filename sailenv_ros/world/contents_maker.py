@@ -157,10 +157,15 @@ class ContentsMaker:
             model=model,
             scale=placement.scale,
             lit_by=self._lit_by.get(piece.body_id, ()),
-            stands=placement.outside is None
-            and (placement.static or (placement.joint is not None and not placement.behaviours)),
+            stands=placement.outside is None and (placement.static or _stays(placement)),
             outside=placement.outside,
         )
+
+
+def _stays(placement: Placement) -> bool:
+    """Return whether what is on a joint has light of its own: not what opens of a piece."""
+    on_joint = placement.joint is not None and not placement.behaviours
+    return on_joint and not placement.asset.opens
 
 
 def _material_names(placement: Placement) -> tuple[str, ...]:

@@ -76,6 +76,8 @@ class World(WorldState):
 
     def despawn(self, instance_id: int) -> None:
         """Take an object out of the world with its parts; their ids are not used again."""
+        for part in self._opening_parts(instance_id):
+            self._bodies.remove(part)
         self._bodies.remove(instance_id)
         self._changed_step = self._step
         self._changed()
@@ -244,3 +246,12 @@ class World(WorldState):
         if placement.static:
             self._changed_step = self._step
         self._changed()
+
+    def _opening_parts(self, instance_id: int) -> tuple[int, ...]:
+        """Return the ids of what opens of a piece; none if it carries anything else on a joint."""
+        if instance_id in self._bodies.waiting:
+            return ()
+        carried = self._bodies.joints.carried_by(self._bodies[instance_id])
+        if not all(body.placement.asset.opens for body in carried):
+            return ()
+        return tuple(number for number, body in self._bodies.items() if body in carried)

@@ -5,7 +5,7 @@ Reads ``config/rooms``; errors have file, line and column, all at once, as those
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -28,6 +28,7 @@ from sailenv_ros.authoring.room_rules.rule_models import (
 from sailenv_ros.errors import SceneDiagnostic, SceneError, UnknownName
 from sailenv_ros.scene.documents import load_document
 from sailenv_ros.scene.fields import SceneModel
+from sailenv_ros.scene.knowledge import OpenNames
 from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.scene_diagnostics import Diagnostic, model_diagnostics
 from sailenv_ros.system.resources import resource_path
@@ -150,8 +151,13 @@ def _unknown(what: str, loc: tuple[Any, ...], name: str, known: Iterable[str]) -
     return Diagnostic(loc, f"there is no {what} {name!r}; {suggestion(name, known)}")
 
 
+def _container(names: Iterable[str]) -> Collection[str]:
+    """Return names to look others up in."""
+    return names if isinstance(names, OpenNames) else frozenset(names)
+
+
 def _things_errors(assets: Iterable[str] | None) -> MoreErrors[ThingsFile]:
-    known = None if assets is None else frozenset(assets)
+    known = None if assets is None else _container(assets)
 
     def errors(file: ThingsFile) -> Iterator[Diagnostic]:
         for name, things in file.things.items():
@@ -166,7 +172,7 @@ def _things_errors(assets: Iterable[str] | None) -> MoreErrors[ThingsFile]:
 def _furniture_errors(
     assets: Iterable[str] | None, things: Mapping[str, tuple[ThingRule, ...]]
 ) -> MoreErrors[FurnitureFile]:
-    known = None if assets is None else frozenset(assets)
+    known = None if assets is None else _container(assets)
 
     def errors(file: FurnitureFile) -> Iterator[Diagnostic]:
         for name, rule in file.furniture.items():

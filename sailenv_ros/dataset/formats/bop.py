@@ -65,7 +65,7 @@ class BopExport(DatasetFormat):
         truths: list[dict[str, Any]] = []
         infos: list[dict[str, Any]] = []
         for row, instance_id in enumerate(table.ids.tolist()):
-            if table.assets[row].partition(PART_MARK)[0] not in self._assets:
+            if not self._library.has(table.assets[row].partition(PART_MARK)[0]):
                 left_out["not in the catalogue"] += 1
                 continue
             mask_name = f"{sample.stem}_{len(truths):06d}.png"
@@ -185,11 +185,6 @@ class BopExport(DatasetFormat):
     @cached_property
     def _library(self) -> AssetLibrary:
         return AssetLibrary(installed_sources())
-
-    @cached_property
-    def _assets(self) -> frozenset[str]:
-        """Names of the assets that there are models of."""
-        return frozenset(self._library.names)
 
 
 def _key(truth: Mapping[str, Any]) -> tuple[str, tuple[float, ...]]:

@@ -146,9 +146,9 @@ def bring_back(editor: SceneEditor, wanted: ObjectRecord) -> int:
         why = [(repr(wanted.name), "is a part of the room: begin the scene anew to have it back")]
         raise InvalidEntry("object", wanted.name, why)
     entry = {**wanted.entry, "behaviours": wanted.behaviours}
-    spawnables = editor.scene.library.spawnables
-    if entry["asset"] not in spawnables:
-        raise UnknownName("asset", entry["asset"], spawnables)
+    known = editor.scene.library.knowledge.assets
+    if entry["asset"] not in known:
+        raise UnknownName("asset", entry["asset"], known)
     number = editor.spawn(entry, wanted.pose)
     if wanted.joint_position is not None:
         editor.scene.world.set_joint(number, wanted.joint_position)

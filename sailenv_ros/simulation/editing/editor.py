@@ -26,6 +26,7 @@ from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.opening_pieces import moving_entries
 
 __all__ = ["SceneEditor", "entry_without_place"]
 
@@ -54,16 +55,23 @@ class SceneEditor:
         return free_name(self.scene.library.canonical_asset(asset), taken)
 
     def spawn(self, entry: Mapping[str, Any], pose: Pose) -> int:
-        """Add an object with keys of a scene file, but for its place; return its instance id."""
-        world = self.scene.world
-        placement = self.scene.library.placement(
-            entry,
-            pose,
-            world,
-            seed=self.scene.seed,
-            start_s=self.scene.now_s,
-        )
+        """Add an object with keys of a scene file, but for its place; return its instance id.
+
+        What opens of a piece that stands still comes with it, as objects of their own.
+        """
+        world, library = self.scene.world, self.scene.library
+        since = {"seed": self.scene.seed, "start_s": self.scene.now_s}
+        placement = library.placement(entry, pose, world, **since)
+        spec = placement.entry
+        assert spec is not None
         instance_id = world.spawn(placement)
+        try:
+            for part in moving_entries((spec,), {spec.name: library.peek_asset(spec.asset)}):
+                described = part.model_dump(exclude_unset=True)
+                world.spawn(library.placement(described, part.pose, world, **since))
+        except BaseException:
+            world.despawn(instance_id)
+            raise
         self.scene.announce()
         return instance_id
 
@@ -80,6 +88,12 @@ class SceneEditor:
                 raise UnknownName("key of an object that can be changed", key, CHANGEABLE)
         if changes.get("name", present.name) != present.name:
             self.require_untaught(instance_id)
+        opened = self.scene.library.peek_asset(present.asset).moving and not (
+            body.placement.asset.moving
+        )
+        if opened and changes.get("scale", present.scale) != present.scale:
+            accepted = "that of a piece without parts on joints; spawn this one anew"
+            raise InvalidRequest(f"scale of {present.name!r}", changes["scale"], accepted)
         if changes.get("materials", ()) is None:
             changes = {**changes, "materials": ()}
         placement = self.scene.library.placement(
@@ -88,6 +102,7 @@ class SceneEditor:
             world,
             seed=self.scene.seed,
             start_s=0.0,
+            shut=bool(body.placement.asset.moving),
         )
         assert placement.entry is not None
         changed = {key: getattr(placement.entry, key) for key in changes}

@@ -1,0 +1,51 @@
+"""Families and their styles: what makes a piece of values that a seed draws."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from sailenv_content.families.parameters import Values
+from sailenv_content.families.workbench import Workbench
+
+__all__ = ["Family", "Style"]
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """One way in which a family looks.
+
+    Attributes
+    ----------
+    make : callable
+        ``make(bench, values)`` puts the piece together: x to its front, z up, the origin at the
+        middle of its base (of what hangs on a wall: at the lower middle of its back, of what hangs
+        from a ceiling: at its lowest point). It may raise `Unfit`.
+    parameters : mapping
+        By name: `Span`, `Whole`, `Choice`, or a value that is always the same.
+    """
+
+    make: Callable[[Workbench, Values], None]
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Family:
+    """A family of pieces.
+
+    Attributes
+    ----------
+    name : str
+    category : str
+        Name in the category table.
+    styles : mapping of str to Style
+    least_m, most_m : (3,) tuple of float
+        Sizes along x, y, z that a piece may have [m]; one that has not is drawn again.
+    """
+
+    name: str
+    category: str
+    styles: Mapping[str, Style]
+    least_m: tuple[float, float, float]
+    most_m: tuple[float, float, float]

@@ -1,0 +1,200 @@
+"""A family, a style and a seed → the piece: drawn, put together, checked, drawn again if unfit."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from sailenv_content.families.family import Family
+from sailenv_content.families.names import PieceName
+from sailenv_content.families.parameters import Values, drawn
+from sailenv_content.families.workbench import Joint, Unfit, Work, Workbench
+from sailenv_ros.assets.solids import joined
+from sailenv_ros.errors import AssetError
+from sailenv_ros.types.labels import PART_MARK
+from sailenv_ros.types.model import Asset, AssetPart, Material, Mesh, Model, ModelPart, MovingPart
+
+__all__ = ["MAX_DRAWS", "Piece", "make_piece"]
+
+MAX_DRAWS = 16
+"""Draws of one seed before the family is given up."""
+
+LEAST_MASS_KG = 0.005
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Piece:
+    """A piece that passed its checks.
+
+    Attributes
+    ----------
+    asset : Asset
+    values : Values
+        What was drawn.
+    draws : int
+        How many it took: 1 if the first was sound.
+    rejected : tuple of str
+        Why the others were not.
+    """
+
+    asset: Asset
+    values: Values
+    draws: int
+    rejected: tuple[str, ...]
+
+
+def make_piece(family: Family, name: PieceName) -> Piece:
+    """Make a piece; the same bytes for the same name.
+
+    Raises
+    ------
+    AssetError
+        If a parameter is impossible, or no draw is sound.
+    """
+    style = family.styles[name.style]
+    owner = f"{family.name}~{name.style}"
+    rejected: list[str] = []
+    for attempt in range(MAX_DRAWS):
+        key = [zlib.crc32(owner.encode()), name.seed, attempt]
+        values = drawn(owner, style.parameters, np.random.default_rng(key))
+        bench = Workbench(np.random.default_rng([*key, 1]))
+        try:
+            style.make(bench, values)
+            asset = _asset(family, name, bench)
+            _check(family, asset)
+        except Unfit as problem:
+            rejected.append(str(problem))
+            continue
+        return Piece(asset=asset, values=values, draws=attempt + 1, rejected=tuple(rejected))
+    raise AssetError(
+        name.whole, f"none of {MAX_DRAWS} draws makes a sound piece; the last: {rejected[-1]}"
+    )
+
+
+def _check(family: Family, asset: Asset) -> None:
+    low, high = asset.model.bounds()
+    size = high - low
+    for axis, side, least, most in zip("xyz", size, family.least_m, family.most_m, strict=True):
+        if not least <= side <= most:
+            raise Unfit(f"{side:.3f} m along {axis}, and {least} to {most} m are accepted")
+    for part in asset.moving:
+        if not part.limits[0] < part.limits[1]:
+            raise Unfit(f"the {part.name} cannot move")
+
+
+def _asset(family: Family, name: PieceName, bench: Workbench) -> Asset:
+    works = [work for work in bench.works if work.meshes]
+    whole = _compound(family.category, name.whole, _title(name), works, bench)
+    movers = [work for work in works if work.joint is not None]
+    if not movers:
+        return whole[0]
+    taken = {work.name for work in movers}
+
+    def belongs(work: Work, root: str) -> bool:
+        return work.name == root or work.name.startswith(root + PART_MARK)
+
+    still = [work for work in works if not any(belongs(work, root) for root in taken)]
+    models = whole[1]
+    body, _ = _compound(family.category, name.whole, _title(name), still, bench, models)
+    moving = tuple(
+        _moving(work, name, [one for one in works if belongs(one, work.name)], bench, models)
+        for work in movers
+    )
+    asset = whole[0]
+    return Asset(
+        name=asset.name,
+        display_name=asset.display_name,
+        category=asset.category,
+        model=asset.model,
+        collision=asset.collision,
+        mass_kg=asset.mass_kg,
+        centre_of_mass_m=asset.centre_of_mass_m,
+        tags=asset.tags,
+        keypoints=asset.keypoints,
+        parts=asset.parts,
+        moving=moving,
+        still=body,
+    )
+
+
+Drawn = dict[str, list[ModelPart]]
+"""What is drawn of each work, by its name."""
+
+
+def _moving(
+    work: Work, name: PieceName, works: list[Work], bench: Workbench, models: Drawn
+) -> MovingPart:
+    assert work.joint is not None
+    joint: Joint = work.joint
+    title = f"{_title(name)}, {work.name}"
+    root = len(work.name) + 1
+    asset, _ = _compound(
+        work.category, name.of_part(work.name), title, works, bench, models, root=root
+    )
+    return MovingPart(
+        name=work.name,
+        asset=asset,
+        type=joint.type,
+        axis=joint.axis,
+        origin_m=joint.origin_m,
+        limits=joint.limits,
+        friction=joint.friction,
+        effort=joint.effort,
+        damping=joint.damping,
+    )
+
+
+def _compound(
+    category: str,
+    name: str,
+    title: str,
+    works: list[Work],
+    bench: Workbench,
+    models: Drawn | None = None,
+    *,
+    root: int = 0,
+) -> tuple[Asset, Drawn]:
+    """Return one body of some works, the first of which is its own, the others its parts."""
+    models = {work.name: _drawn(work) for work in works} if models is None else models
+    own = works[0].name
+    meshes: list[ModelPart] = []
+    parts: list[AssetPart] = []
+    for work in works:
+        first = len(meshes)
+        meshes += models[work.name]
+        if work.name != own:
+            places = tuple(range(first, len(meshes)))
+            parts.append(AssetPart(name=work.name[root:], category=work.category, meshes=places))
+    mass = max(sum(work.mass_kg for work in works), LEAST_MASS_KG)
+    x, y, z = (sum((work.moment for work in works), np.zeros(3)) / mass).tolist()
+    asset = Asset(
+        name=name,
+        display_name=title,
+        category=category,
+        model=Model(name=name, parts=tuple(meshes)),
+        collision=tuple(shape for work in works for shape in work.shapes),
+        mass_kg=mass,
+        centre_of_mass_m=(x, y, z),
+        tags=("from a seed",),
+        keypoints=() if root else tuple(bench.keypoints.items()),
+        parts=tuple(parts),
+        opens=bool(root),
+    )
+    return asset, models
+
+
+def _drawn(work: Work) -> list[ModelPart]:
+    """Return the meshes of a work, one for each material."""
+    by_material: dict[int, tuple[Material, list[Mesh]]] = {}
+    for stuff, mesh in work.meshes:
+        by_material.setdefault(id(stuff.material), (stuff.material, []))[1].append(mesh)
+    return [ModelPart(mesh=joined(all_), material=one) for one, all_ in by_material.values()]
+
+
+@lru_cache(maxsize=1024)
+def _title(name: PieceName) -> str:
+    words = name.family.replace("_", " ")
+    return f"{words.capitalize()}, {name.style.replace('_', ' ')} {name.seed}"

@@ -1,0 +1,141 @@
+"""What pieces are made of: woods, metals, fabrics, glass, with density and finish.
+
+A name and a colour in, a `Stuff` out. Fine structures are the catalogue's own patterns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from sailenv_content.standard.patterns import PATTERNS, pattern_maps
+from sailenv_ros.types.colour import linear_from_srgb
+from sailenv_ros.types.model import Material
+
+__all__ = ["Stuff", "colour_of", "fabric", "glass", "glow", "leather", "metal", "paint", "wood"]
+
+Vector3 = tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Stuff:
+    """A material, the size of what its textures show, and its density.
+
+    Attributes
+    ----------
+    material : Material
+    tile_m : float
+        Edge of what the texture shows [m].
+    density : float
+        Mean, hollows of a real piece counted in [kg/m³].
+    """
+
+    material: Material
+    tile_m: float
+    density: float
+
+
+_WOODS = {
+    "oak": "#b98d5c",
+    "light oak": "#cfae80",
+    "walnut": "#6b4630",
+    "beech": "#cda478",
+    "birch": "#dcc49c",
+    "teak": "#94633a",
+    "cherry": "#8e5233",
+    "ash": "#d3bd98",
+    "pine": "#d6b075",
+    "wenge": "#3b2a22",
+    "mahogany": "#6d3524",
+    "black oak": "#2b2623",
+}
+
+_METALS: dict[str, tuple[str, float]] = {
+    "chrome": ("#d9dadc", 0.10),
+    "steel": ("#b6b8ba", 0.30),
+    "brass": ("#c9a45c", 0.24),
+    "copper": ("#c27a52", 0.26),
+    "bronze": ("#7d6242", 0.34),
+    "alu": ("#c4c6c8", 0.38),
+}
+
+
+def colour_of(text: str) -> Vector3:
+    """Return the linear colour of ``#rrggbb``."""
+    srgb = np.frombuffer(bytes.fromhex(text[1:]), np.uint8) / 255.0
+    red, green, blue = (float(value) for value in linear_from_srgb(srgb))
+    return red, green, blue
+
+
+def _patterned(name: str, pattern: str, colour: str, roughness: float, density: float) -> Stuff:
+    maps = pattern_maps(PATTERNS[pattern])
+    made = Material(name=name, base_colour=(*colour_of(colour), 1.0), roughness=roughness, **maps)
+    return Stuff(made, PATTERNS[pattern].tile_m, density)
+
+
+@lru_cache(maxsize=256)
+def wood(species: str) -> Stuff:
+    """Return a wood with its grain along u."""
+    return _patterned(species, "grain", _WOODS[species], 0.48, 600.0)
+
+
+@lru_cache(maxsize=256)
+def paint(colour: str, roughness: float = 0.42, density: float = 600.0) -> Stuff:
+    """Return a lacquer on board, or plastic."""
+    made = Material(
+        name=f"paint {colour}", base_colour=(*colour_of(colour), 1.0), roughness=roughness
+    )
+    return Stuff(made, 1.0, density)
+
+
+@lru_cache(maxsize=256)
+def metal(kind: str) -> Stuff:
+    """Return a metal by name, or one that is powder-coated in ``#rrggbb``."""
+    if kind.startswith("#"):
+        made = Material(name=f"coated {kind}", base_colour=(*colour_of(kind), 1.0), roughness=0.5)
+        return Stuff(made, 1.0, 2500.0)
+    colour, roughness = _METALS[kind]
+    made = Material(
+        name=kind, base_colour=(*colour_of(colour), 1.0), metallic=1.0, roughness=roughness
+    )
+    return Stuff(made, 1.0, 2500.0)
+
+
+@lru_cache(maxsize=256)
+def fabric(colour: str) -> Stuff:
+    """Return upholstery."""
+    return _patterned(f"fabric {colour}", "weave", colour, 0.95, 70.0)
+
+
+@lru_cache(maxsize=256)
+def leather(colour: str) -> Stuff:
+    """Return leather over foam."""
+    return _patterned(f"leather {colour}", "leather", colour, 0.5, 80.0)
+
+
+@lru_cache(maxsize=256)
+def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> Stuff:
+    """Return clear or tinted glass."""
+    made = Material(
+        name=f"glass {colour}",
+        base_colour=(*colour_of(colour), opacity),
+        roughness=0.06,
+        alpha="blend",
+    )
+    return Stuff(made, 1.0, 2500.0)
+
+
+@lru_cache(maxsize=256)
+def glow(colour: str, strength: float) -> Stuff:
+    """Return a shade or a bulb that glows by the light of its lamp."""
+    red, green, blue = colour_of(colour)
+    made = Material(
+        name=f"shade {colour}",
+        base_colour=(red, green, blue, 1.0),
+        roughness=0.9,
+        glow=(strength * red, strength * green, strength * blue),
+        double_sided=True,
+    )
+    return Stuff(made, 1.0, 300.0)

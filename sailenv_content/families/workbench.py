@@ -1,0 +1,258 @@
+"""Where a piece is put together: forms with their stuff, labelled parts, and what opens.
+
+A form collides as itself: a board as its box, others as their hulls. Mass and centre follow from
+the volumes and densities.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
+
+from sailenv_content.families.shaping import Floats, board, placed
+from sailenv_content.families.stuff import Stuff
+from sailenv_ros.assets.hulls import convex_hull
+from sailenv_ros.types.labels import PART_MARK
+from sailenv_ros.types.model import BoxShape, CollisionShape, Mesh
+
+__all__ = ["Joint", "Unfit", "Work", "Workbench"]
+
+Vector3 = tuple[float, float, float]
+Collides = Literal["hull", "box", "none"]
+
+
+class Unfit(Exception):
+    """What was drawn makes no sound piece: it is drawn again."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joint:
+    """On what a part moves; see `MovingPart`."""
+
+    type: Literal["hinge", "slide"]
+    axis: Vector3
+    origin_m: Vector3
+    limits: tuple[float, float]
+    friction: float
+    effort: float
+    damping: float
+
+
+@dataclass(slots=True, kw_only=True)
+class Work:
+    """What belongs to one part of a piece, or to its body.
+
+    Attributes
+    ----------
+    name : str
+        ``"left door"``, ``"left door/handle"``; empty for the body.
+    category : str
+    joint : Joint or None
+        Of what opens.
+    meshes : list of (Stuff, Mesh)
+    shapes : list of CollisionShape
+    mass_kg : float
+    moment : (3,) float64
+        Mass times centre [kg m].
+    """
+
+    name: str
+    category: str
+    joint: Joint | None = None
+    meshes: list[tuple[Stuff, Mesh]] = field(default_factory=list)
+    shapes: list[CollisionShape] = field(default_factory=list)
+    mass_kg: float = 0.0
+    moment: Floats = field(default_factory=lambda: np.zeros(3))
+
+
+class Workbench:
+    """Puts one piece together.
+
+    Attributes
+    ----------
+    rng : numpy.random.Generator
+        For all that is random beside the parameters.
+    works : list of Work
+        The body first.
+    keypoints : dict of str to (3,) tuple of float
+    """
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self.rng = rng
+        self.works = [Work(name="", category="")]
+        self.keypoints: dict[str, Vector3] = {}
+        self._at = self.works[0]
+
+    # -- forms -----------------------------------------------------------------------------
+
+    def box(
+        self,
+        stuff: Stuff,
+        size: ArrayLike,
+        at: ArrayLike,
+        *,
+        turn: ArrayLike = (0.0, 0.0, 0.0),
+        bevel: float = 0.002,
+        top: tuple[float, float] = (1.0, 1.0),
+        lean: tuple[float, float] = (0.0, 0.0),
+        collides: bool = True,
+    ) -> None:
+        """Add a board: its size, and where its middle is [m]; see `shaping.board`."""
+        sides = np.asarray(size, np.float64)
+        if not (np.isfinite(sides).all() and (sides > 0.0).all()):
+            raise Unfit(f"a board of {sides.tolist()} m")
+        u, v = self.rng.uniform(0.0, 1.0, 2).tolist()
+        x, y, z = sides.tolist()
+        mesh = board((x, y, z), bevel=bevel, tile_m=stuff.tile_m, shift=(u, v), top=top, lean=lean)
+        mesh = placed(mesh, at, turn)
+        plain = top == (1.0, 1.0) and lean == (0.0, 0.0)
+        self._add(stuff, mesh, float(sides.prod()))
+        if collides and plain:
+            self._at.shapes.append(_box_shape(sides, at, turn))
+        elif collides:
+            self._at.shapes.append(convex_hull(mesh.positions))
+
+    def form(
+        self,
+        stuff: Stuff,
+        mesh: Mesh,
+        at: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        turn: ArrayLike = (0.0, 0.0, 0.0),
+        collides: Collides = "hull",
+        volume: float | None = None,
+    ) -> None:
+        """Add any form; `volume` [m³] is that of its triangles unless it is given."""
+        mesh = placed(mesh, at, turn)
+        self._add(stuff, mesh, _volume(mesh) if volume is None else volume)
+        if collides == "hull":
+            self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
+        elif collides == "box":
+            low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+            self._at.shapes.append(_box_shape(high - low, (low + high) / 2.0, (0.0, 0.0, 0.0)))
+
+    def collide(self, size: ArrayLike, at: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        """Add a box that collides and is not drawn: for what is drawn without collision."""
+        self._at.shapes.append(_box_shape(np.asarray(size, np.float64), at, turn))
+
+    # -- parts -----------------------------------------------------------------------------
+
+    @contextmanager
+    def part(self, name: str, category: str) -> Iterator[None]:
+        """Label all that is added inside as a part; inside a part, as a part of that."""
+        with self._working(Work(name=self._named(name), category=category)):
+            yield
+
+    @contextmanager
+    def hinge(
+        self,
+        name: str,
+        category: str,
+        *,
+        at: ArrayLike,
+        axis: Vector3,
+        opens_deg: float,
+        friction: float = 0.3,
+        damping: float = 0.3,
+    ) -> Iterator[None]:
+        """Add a part that turns by up to an angle about an axis through a point."""
+        x, y, z = np.asarray(at, np.float64).tolist()
+        joint = Joint(
+            type="hinge",
+            axis=axis,
+            origin_m=(x, y, z),
+            limits=(0.0, math.radians(opens_deg)),
+            friction=friction,
+            effort=40.0,
+            damping=damping,
+        )
+        with self._working(Work(name=self._named(name), category=category, joint=joint)):
+            yield
+
+    @contextmanager
+    def slide(
+        self,
+        name: str,
+        category: str,
+        *,
+        by: float,
+        axis: Vector3 = (1.0, 0.0, 0.0),
+        friction: float = 2.0,
+        damping: float = 4.0,
+    ) -> Iterator[None]:
+        """Add a part that slides by up to a length [m]."""
+        joint = Joint(
+            type="slide",
+            axis=axis,
+            origin_m=(0.0, 0.0, 0.0),
+            limits=(0.0, round(by, 4)),
+            friction=friction,
+            effort=80.0,
+            damping=damping,
+        )
+        with self._working(Work(name=self._named(name), category=category, joint=joint)):
+            yield
+
+    @contextmanager
+    def _working(self, work: Work) -> Iterator[None]:
+        before, self._at = self._at, work
+        self.works.append(work)
+        try:
+            yield
+        finally:
+            self._at = before
+
+    def _named(self, name: str) -> str:
+        outer = self._at.name
+        taken = {work.name for work in self.works}
+        whole = f"{outer}{PART_MARK}{name}" if outer else name
+        number, free = 1, whole
+        while free in taken:
+            number += 1
+            free = f"{whole} {number}"
+        return free
+
+    # -- measures --------------------------------------------------------------------------
+
+    def chance(self, share: float) -> bool:
+        """Return whether something is so that is so with this probability."""
+        return bool(self.rng.uniform() < share)
+
+    def pick(self, *values: Any) -> Any:
+        """Return one of some values."""
+        return values[int(self.rng.integers(len(values)))]
+
+    def between(self, least: float, most: float) -> float:
+        """Return a number between two."""
+        return float(self.rng.uniform(least, most))
+
+    def _add(self, stuff: Stuff, mesh: Mesh, volume: float) -> None:
+        work = self._at
+        work.meshes.append((stuff, mesh))
+        mass = max(volume, 1e-7) * stuff.density
+        middle = (mesh.positions.min(axis=0) + mesh.positions.max(axis=0)).astype(np.float64) / 2.0
+        work.mass_kg += mass
+        work.moment = work.moment + mass * middle
+
+
+def _box_shape(size: NDArray[Any], at: ArrayLike, turn: ArrayLike) -> BoxShape:
+    hx, hy, hz = (np.asarray(size, np.float64) / 2.0).tolist()
+    x, y, z = np.asarray(at, np.float64).tolist()
+    angles = np.asarray(turn, np.float64)
+    quat = (0.0, 0.0, 0.0, 1.0)
+    if angles.any():
+        qx, qy, qz, qw = Rotation.from_euler("xyz", angles, degrees=True).as_quat().tolist()
+        quat = (qx, qy, qz, qw)
+    return BoxShape(half_extents_m=(hx, hy, hz), centre_m=(x, y, z), orientation_xyzw=quat)
+
+
+def _volume(mesh: Mesh) -> float:
+    a, b, c = (mesh.positions[mesh.triangles[:, k]].astype(np.float64) for k in range(3))
+    return abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6.0

@@ -1,0 +1,69 @@
+"""Shapes that objects collide as, in the body frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "BoxShape",
+    "CollisionShape",
+    "ConvexShape",
+    "CylinderShape",
+    "SphereShape",
+    "TriangleShape",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoxShape:
+    """A box; `centre_m` and `orientation_xyzw` in the body frame."""
+
+    half_extents_m: tuple[float, float, float]
+    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    orientation_xyzw: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SphereShape:
+    """A ball; `centre_m` in the body frame."""
+
+    radius_m: float
+    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CylinderShape:
+    """A cylinder along the body's z axis; `centre_m` in the body frame."""
+
+    radius_m: float
+    height_m: float
+    centre_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class ConvexShape:
+    """The convex hull of points (N, 3) float64 in the body frame [m]."""
+
+    points: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class TriangleShape:
+    """Triangles as they are; hollow, for static objects only.
+
+    Attributes
+    ----------
+    positions : (N, 3) float64
+        Vertices in the body frame [m].
+    triangles : (M, 3) int32
+    """
+
+    positions: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+
+
+CollisionShape: TypeAlias = BoxShape | SphereShape | CylinderShape | ConvexShape | TriangleShape
