@@ -24,10 +24,13 @@ class Style:
         from a ceiling: at its lowest point). It may raise `Unfit`.
     parameters : mapping
         By name: `Span`, `Whole`, `Choice`, or a value that is always the same.
+    category : str
+        Empty takes the family's.
     """
 
     make: Callable[[Workbench, Values], None]
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    category: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -87,7 +87,8 @@ def _check(family: Family, asset: Asset) -> None:
 
 def _asset(family: Family, name: PieceName, bench: Workbench) -> Asset:
     works = [work for work in bench.works if work.meshes]
-    whole = _compound(family.category, name.whole, _title(name), works, bench)
+    category = family.styles[name.style].category or family.category
+    whole = _compound(category, name.whole, _title(name), works, bench)
     movers = [work for work in works if work.joint is not None]
     if not movers:
         return whole[0]
@@ -98,7 +99,7 @@ def _asset(family: Family, name: PieceName, bench: Workbench) -> Asset:
 
     still = [work for work in works if not any(belongs(work, root) for root in taken)]
     models = whole[1]
-    body, _ = _compound(family.category, name.whole, _title(name), still, bench, models)
+    body, _ = _compound(category, name.whole, _title(name), still, bench, models)
     moving = tuple(
         _moving(work, name, [one for one in works if belongs(one, work.name)], bench, models)
         for work in movers

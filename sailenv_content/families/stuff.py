@@ -14,7 +14,20 @@ from sailenv_content.standard.patterns import PATTERNS, pattern_maps
 from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.model import Material
 
-__all__ = ["Stuff", "colour_of", "fabric", "glass", "glow", "leather", "metal", "paint", "wood"]
+__all__ = [
+    "FABRICS",
+    "LEATHERS",
+    "WOODS",
+    "Stuff",
+    "colour_of",
+    "fabric",
+    "glass",
+    "glow",
+    "leather",
+    "metal",
+    "paint",
+    "wood",
+]
 
 Vector3 = tuple[float, float, float]
 
@@ -139,3 +152,20 @@ def glow(colour: str, strength: float) -> Stuff:
         double_sided=True,
     )
     return Stuff(made, 1.0, 300.0)
+
+
+WOODS = tuple(wood(n) for n in ("oak", "walnut", "beech", "teak", "ash", "black oak", "cherry"))
+FABRICS = tuple(
+    fabric(c)
+    for c in (
+        "#6f7a83",
+        "#8a3b32",
+        "#c9bda8",
+        "#3d5a5c",
+        "#b98a3e",
+        "#4a4a52",
+        "#7c8a6a",
+        "#a5604a",
+    )
+)
+LEATHERS = tuple(leather(c) for c in ("#6b3f24", "#2a2624", "#a0703f", "#d8cdb8"))

@@ -7,11 +7,10 @@ import numpy as np
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import four_legs, leg
 from sailenv_content.families.kinds import sofa
-from sailenv_content.families.kinds.chair import FABRICS, LEATHERS, WOODS
-from sailenv_content.families.kinds.sofa import pad
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import ribbon, swept
-from sailenv_content.families.stuff import metal
+from sailenv_content.families.stuff import FABRICS, LEATHERS, WOODS, metal
+from sailenv_content.families.upholstery import pad
 from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import curve, loft, rectangle
 from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
@@ -233,7 +232,7 @@ FAMILY = Family(
     most_m=(1.1, 1.15, 1.2),
     styles={
         "boxy": Style(
-            sofa._boxy,
+            sofa.boxy,
             {
                 **_WHOLE,
                 "arm": Span(0.11, 0.2),
@@ -242,7 +241,7 @@ FAMILY = Family(
             },
         ),
         "rolled": Style(
-            sofa._rolled, {**_WHOLE, "arm": Span(0.16, 0.2), "skirt": Choice(True, False)}
+            sofa.rolled, {**_WHOLE, "arm": Span(0.16, 0.2), "skirt": Choice(True, False)}
         ),
         "wing": Style(
             _wing,

@@ -7,9 +7,8 @@ from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, door
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import carcass
-from sailenv_content.families.kinds.chair import WOODS
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
-from sailenv_content.families.stuff import metal, paint
+from sailenv_content.families.stuff import WOODS, metal, paint
 from sailenv_content.families.workbench import Workbench
 
 __all__ = ["FAMILY"]

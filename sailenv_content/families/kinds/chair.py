@@ -8,27 +8,11 @@ from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import four_legs, leg
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
 from sailenv_content.families.shaping import cushion, extruded, ribbon, swept
-from sailenv_content.families.stuff import fabric, leather, metal, paint, wood
+from sailenv_content.families.stuff import FABRICS, LEATHERS, WOODS, metal, paint, wood
 from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import curve, rectangle
 
-__all__ = ["FAMILY", "FABRICS", "WOODS"]
-
-WOODS = tuple(wood(n) for n in ("oak", "walnut", "beech", "teak", "ash", "black oak", "cherry"))
-FABRICS = tuple(
-    fabric(c)
-    for c in (
-        "#6f7a83",
-        "#8a3b32",
-        "#c9bda8",
-        "#3d5a5c",
-        "#b98a3e",
-        "#4a4a52",
-        "#7c8a6a",
-        "#a5604a",
-    )
-)
-LEATHERS = tuple(leather(c) for c in ("#6b3f24", "#2a2624", "#a0703f", "#d8cdb8"))
+__all__ = ["FAMILY"]
 
 
 def _seat_pad(b: Workbench, v: Values, z: float, d: float, w: float) -> None:

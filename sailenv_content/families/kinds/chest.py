@@ -7,9 +7,8 @@ from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, door, drawer
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import carcass, four_legs, shelf
-from sailenv_content.families.kinds.chair import WOODS
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
-from sailenv_content.families.stuff import metal, paint, wood
+from sailenv_content.families.stuff import WOODS, metal, paint, wood
 from sailenv_content.families.workbench import Workbench
 
 __all__ = ["FAMILY"]
@@ -22,7 +21,7 @@ def _body(b: Workbench, v: Values) -> tuple[Box, Box]:
     front = v.depth / 2 - 0.022
     low = (-v.depth / 2 + 0.006, -v.width / 2 + BOARD_M, v.legs + BOARD_M)
     inside = Box(low, (front, v.width / 2 - BOARD_M, v.height - BOARD_M))
-    carcass(b, v.stuff, inside, top=v.lid, overhang=0.0)
+    carcass(b, v.scheme[0], inside, top=v.scheme[2], overhang=0.0)
     four_legs(b, v.frame, v.leg, v.depth - 0.06, v.width - 0.06, v.legs, 0.04)
     x = front + 0.001
     fronts = Box((x, -v.width / 2, v.legs), (x + 0.019, v.width / 2, v.height - BOARD_M))
@@ -39,7 +38,7 @@ def _drawers(b: Workbench, v: Values) -> None:
             drawer(
                 b,
                 f"drawer {number}",
-                v.door,
+                v.scheme[1],
                 v.front,
                 panel,
                 inside.size[0] - 0.03,
@@ -74,14 +73,30 @@ def _doors(b: Workbench, v: Values) -> None:
         stores(b, Box(room.low, (room.high[0], room.high[1], z - 0.02)))
     right, middle, left = fronts.columns([1.0, 1.0, 1.0], CLEARANCE_M)
     door(
-        b, "right door", v.door, v.front, right, hinge="right", handle_kind=v.handle, metal_=v.metal
+        b,
+        "right door",
+        v.scheme[1],
+        v.front,
+        right,
+        hinge="right",
+        handle_kind=v.handle,
+        metal_=v.metal,
     )
-    door(b, "left door", v.door, v.front, left, hinge="left", handle_kind=v.handle, metal_=v.metal)
+    door(
+        b,
+        "left door",
+        v.scheme[1],
+        v.front,
+        left,
+        hinge="left",
+        handle_kind=v.handle,
+        metal_=v.metal,
+    )
     for number, panel in enumerate(middle.rows([1.0] * v.rows, CLEARANCE_M)):
         drawer(
             b,
             f"drawer {number + 1}",
-            v.door,
+            v.scheme[1],
             "flat",
             panel,
             inside.size[0] - 0.03,
@@ -99,18 +114,18 @@ def _tv(b: Workbench, v: Values) -> None:
     for room, other in ((rooms[0], rooms[1]), (rooms[1], rooms[2])):
         y = float(room.high[1] + other.low[1]) / 2
         b.box(
-            v.stuff,
+            v.scheme[0],
             (inside.size[0], BOARD_M, inside.size[2]),
             (inside.middle[0], y, inside.middle[2]),
         )
-    shelf(b, v.stuff, rooms[1], float(rooms[1].middle[2]), setback=0.03)
+    shelf(b, v.scheme[0], rooms[1], float(rooms[1].middle[2]), setback=0.03)
     right, _, left = fronts.columns([1.0, 1.2, 1.0], CLEARANCE_M)
     if v.drawers:
         for name, panel in (("right drawer", right), ("left drawer", left)):
             drawer(
                 b,
                 name,
-                v.door,
+                v.scheme[1],
                 v.front,
                 panel,
                 inside.size[0] - 0.03,
@@ -123,7 +138,7 @@ def _tv(b: Workbench, v: Values) -> None:
         door(
             b,
             "right door",
-            v.door,
+            v.scheme[1],
             v.front,
             right,
             hinge="right",
@@ -133,7 +148,7 @@ def _tv(b: Workbench, v: Values) -> None:
         door(
             b,
             "left door",
-            v.door,
+            v.scheme[1],
             v.front,
             left,
             hinge="left",
@@ -142,11 +157,23 @@ def _tv(b: Workbench, v: Values) -> None:
         )
 
 
+_WHITE, _DARK, _SAGE, _BLUE = (paint(c) for c in ("#e9e6df", "#33373b", "#8c9a86", "#54616b"))
+_SCHEMES = (
+    *((one, one, one) for one in WOODS),
+    (_WHITE, _WHITE, _WHITE),
+    (_WHITE, _WHITE, wood("oak")),
+    (_BLUE, _BLUE, wood("oak")),
+    (_SAGE, _SAGE, wood("ash")),
+    (_DARK, _DARK, wood("walnut")),
+    (wood("walnut"), _WHITE, wood("walnut")),
+    (wood("oak"), _SAGE, wood("oak")),
+    (wood("black oak"), wood("walnut"), wood("black oak")),
+)
+"""What sides, fronts and top are made of, that go together."""
+
 _STUFF = {
-    "stuff": Choice(*WOODS, paint("#e9e6df"), paint("#54616b")),
-    "lid": Choice(*WOODS),
+    "scheme": Choice(*_SCHEMES),
     "inner": wood("birch"),
-    "door": Choice(*WOODS, paint("#e9e6df"), paint("#8c9a86"), paint("#33373b")),
     "frame": Choice(*WOODS, metal("#232326")),
     "leg": Choice("tapered", "round", "square"),
     "handle": Choice("bar", "knob", "cup", "edge"),
@@ -184,6 +211,7 @@ FAMILY = Family(
                 "columns": 1,
                 "front": Choice("flat", "shaker"),
             },
+            "nightstand",
         ),
         "sideboard": Style(
             _doors,

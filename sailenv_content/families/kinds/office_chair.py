@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from sailenv_content.families.family import Family, Style
-from sailenv_content.families.kinds.chair import FABRICS, LEATHERS
-from sailenv_content.families.kinds.sofa import pad
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import ribbon, swept, turned
-from sailenv_content.families.stuff import Stuff, metal, paint, wood
+from sailenv_content.families.stuff import FABRICS, LEATHERS, Stuff, metal, paint, wood
+from sailenv_content.families.upholstery import pad
 from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import curve
 

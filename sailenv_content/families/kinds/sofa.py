@@ -6,97 +6,18 @@ import numpy as np
 
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import four_legs, leg
-from sailenv_content.families.kinds.chair import FABRICS, LEATHERS, WOODS
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
-from sailenv_content.families.shaping import cushion, placed, turned
-from sailenv_content.families.stuff import Stuff, metal
+from sailenv_content.families.shaping import placed, turned
+from sailenv_content.families.stuff import FABRICS, LEATHERS, WOODS, metal
+from sailenv_content.families.upholstery import loose_cushions, pad, seat, width_of
 from sailenv_content.families.workbench import Workbench
 
-__all__ = ["FAMILY", "pad", "seat"]
+__all__ = ["FAMILY", "boxy", "rolled"]
 
 
-def pad(
-    b: Workbench,
-    stuff: Stuff,
-    size: tuple[float, float, float],
-    at: tuple[float, float, float],
-    *,
-    puff: float = 0.02,
-    radius: float = 0.045,
-    turn: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    pinch: float = 0.0,
-    collides: bool = True,
-) -> None:
-    """Add a cushion that collides as its box."""
-    mesh = cushion(size, radius=radius, puff=puff, tile_m=stuff.tile_m, steps=8, pinch=pinch)
-    b.form(stuff, mesh, at, turn=turn, collides="none")
-    if collides:
-        b.collide(size, at, turn)
-
-
-def _width(v: Values) -> float:
-    return float(v.seats * v.seat + 2.0 * v.arm)
-
-
-def seat(b: Workbench, v: Values, width: float, depth: float, base: float) -> None:
-    """Add base, back, seat and back cushions between arms."""
-    inner = width - 2.0 * v.arm
-    top = v.height
-    pad(b, v.cover, (depth - 0.02, inner, 0.16), (0.0, 0.0, base + 0.08), puff=0.0, radius=0.02)
-    back = 0.17
-    x = -depth / 2 + back / 2
-    pad(
-        b,
-        v.cover,
-        (back, inner, v.back - base - 0.1),
-        (x, 0.0, (v.back + base + 0.1) / 2),
-        puff=0.0,
-    )
-    each = inner / v.seats
-    deep = depth - back
-    with b.part("seat cushions", "pillow"):
-        for number in range(v.seats):
-            y = -inner / 2 + (number + 0.5) * each
-            at = (back / 2 + 0.015, y, base + 0.16 + (top - base - 0.16) / 2)
-            pad(b, v.cover, (deep + 0.02, each - 0.006, top - base - 0.16), at, puff=0.022)
-    tall = v.back - top + 0.07
-    with b.part("back cushions", "pillow"):
-        for number in range(v.seats):
-            y = -inner / 2 + (number + 0.5) * each
-            at = (x + back / 2 + 0.075, y, top + tall / 2 - 0.01)
-            pad(
-                b,
-                v.cover,
-                (0.15, each - 0.012, tall),
-                at,
-                puff=0.035,
-                turn=(0.0, -11.0, 0.0),
-                pinch=v.soft,
-            )
-
-
-def _loose(b: Workbench, v: Values, width: float, depth: float) -> None:
-    """Throw one or two small cushions into the corners."""
-    for sign in (-1.0, 1.0):
-        if b.chance(v.loose):
-            with b.part("cushion", "pillow"):
-                y = sign * (width / 2 - v.arm - 0.23)
-                at = (-depth / 2 + 0.41, y, v.height + 0.2)
-                pad(
-                    b,
-                    b.pick(*FABRICS),
-                    (0.07, 0.42, 0.42),
-                    at,
-                    puff=0.055,
-                    radius=0.03,
-                    pinch=1.0,
-                    turn=(0.0, -22.0, sign * -14.0),
-                    collides=False,
-                )
-
-
-def _boxy(b: Workbench, v: Values) -> None:
-    width, d = _width(v), v.depth
+def boxy(b: Workbench, v: Values) -> None:
+    """Make arms that are blocks."""
+    width, d = width_of(v), v.depth
     base = v.legs
     seat(b, v, width, d, base)
     for sy in (-1.0, 1.0):
@@ -110,12 +31,12 @@ def _boxy(b: Workbench, v: Values) -> None:
             radius=v.edge,
         )
     four_legs(b, v.frame, v.leg, d - 0.1, width - 0.12, base + 0.005, 0.045)
-    _loose(b, v, width, d)
+    loose_cushions(b, v, width, d)
 
 
-def _rolled(b: Workbench, v: Values) -> None:
-    """Arms end in a roll; a skirt or turned feet below."""
-    width, d = _width(v), v.depth
+def rolled(b: Workbench, v: Values) -> None:
+    """Make arms that end in a roll; a skirt or turned feet below."""
+    width, d = width_of(v), v.depth
     base = v.legs
     seat(b, v, width, d, base)
     r = v.arm * 0.56
@@ -166,12 +87,12 @@ def _rolled(b: Workbench, v: Values) -> None:
             leg(
                 b, v.frame, "turned", sx * (d / 2 - 0.09), sy * (width / 2 - 0.1), base + 0.01, 0.05
             )
-    _loose(b, v, width, d)
+    loose_cushions(b, v, width, d)
 
 
 def _on_legs(b: Workbench, v: Values) -> None:
-    """A wooden or metal frame one sees, thin cushions on it."""
-    width, d, t = _width(v), v.depth, 0.04
+    """Make a frame of wood or metal that one sees, thin cushions on it."""
+    width, d, t = width_of(v), v.depth, 0.04
     h = v.height - 0.13
     inner = width - 2 * v.arm
     for sx, tall in ((1.0, v.arm_height), (-1.0, v.arm_height)):
@@ -226,12 +147,12 @@ def _on_legs(b: Workbench, v: Values) -> None:
                 puff=0.025,
                 turn=(0.0, tilt, 0.0),
             )
-    _loose(b, v, width, d)
+    loose_cushions(b, v, width, d)
 
 
 def _tufted(b: Workbench, v: Values) -> None:
     """Back and arms of one height, with buttons in rows."""
-    width, d = _width(v), v.depth
+    width, d = width_of(v), v.depth
     base, top = v.legs, v.arm_height + 0.1
     inner = width - 2 * v.arm
     x = -d / 2 + 0.1
@@ -280,12 +201,12 @@ def _tufted(b: Workbench, v: Values) -> None:
                 base + 0.02,
                 0.055,
             )
-    _loose(b, v, width, d)
+    loose_cushions(b, v, width, d)
 
 
 def _corner(b: Workbench, v: Values) -> None:
     """Make a boxy sofa with a long seat at one end."""
-    width, d = _width(v), v.depth
+    width, d = width_of(v), v.depth
     base, long = v.legs, v.chaise
     side = v.side
     _boxy_without_arm(b, v, width, d, side)
@@ -306,7 +227,7 @@ def _corner(b: Workbench, v: Values) -> None:
             base + 0.005,
             0.045,
         )
-    _loose(b, v, width, d)
+    loose_cushions(b, v, width, d)
 
 
 def _boxy_without_arm(b: Workbench, v: Values, width: float, d: float, side: float) -> None:
@@ -354,7 +275,7 @@ FAMILY = Family(
     most_m=(1.9, 3.4, 1.05),
     styles={
         "boxy": Style(
-            _boxy,
+            boxy,
             {
                 **_SHARED,
                 "arm": Span(0.12, 0.24),
@@ -364,7 +285,7 @@ FAMILY = Family(
             },
         ),
         "rolled": Style(
-            _rolled,
+            rolled,
             {
                 **_SHARED,
                 "arm": Span(0.18, 0.24),

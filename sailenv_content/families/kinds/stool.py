@@ -6,11 +6,10 @@ import numpy as np
 
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import leg
-from sailenv_content.families.kinds.chair import FABRICS, LEATHERS, WOODS
-from sailenv_content.families.kinds.sofa import pad
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import cushion, extruded, swept, turned
-from sailenv_content.families.stuff import metal, paint
+from sailenv_content.families.stuff import FABRICS, LEATHERS, WOODS, metal, paint
+from sailenv_content.families.upholstery import pad
 from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import circle, rectangle
 

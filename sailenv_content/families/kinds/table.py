@@ -6,10 +6,9 @@ import numpy as np
 
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import four_legs, leg
-from sailenv_content.families.kinds.chair import WOODS
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import extruded, swept, turned
-from sailenv_content.families.stuff import metal, paint
+from sailenv_content.families.stuff import WOODS, metal, paint
 from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import circle, rectangle
 
@@ -188,6 +187,7 @@ FAMILY = Family(
                 "stuff": _TOPS,
                 "frame": _FRAMES,
             },
+            "coffee table",
         ),
         "slatted": Style(
             _nested,
@@ -199,6 +199,7 @@ FAMILY = Family(
                 "stuff": Choice(*WOODS),
                 "frame": _FRAMES,
             },
+            "coffee table",
         ),
         "side": Style(
             _side,
@@ -210,6 +211,7 @@ FAMILY = Family(
                 "stuff": _TOPS,
                 "frame": _FRAMES,
             },
+            "coffee table",
         ),
     },
 )

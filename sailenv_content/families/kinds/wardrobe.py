@@ -64,6 +64,7 @@ def _doors(b: Workbench, stuff: Stuff, front: Box, v: Values, metal_: Stuff, cou
             handle_kind=v.handle,
             metal_=metal_,
             handle_z=min(1.05, float(panel.middle[2])),
+            opens_deg=110.0 if count < 3 else 78.0,  # neighbours open towards each other
         )
 
 
@@ -131,7 +132,7 @@ def _with_drawers(b: Workbench, v: Values) -> None:
             metal_=v.metal,
             side_gap=0.034,
         )
-    _doors(b, v.stuff, _front(inside, v, split, v.height), v, v.metal, 2)
+    _doors(b, v.stuff, _front(inside, v, split, v.height - 0.018), v, v.metal, 2)
 
 
 def _open(b: Workbench, v: Values) -> None:
