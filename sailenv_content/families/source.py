@@ -16,7 +16,7 @@ from sailenv_ros.types.model import Asset
 __all__ = ["MAX_KEPT", "FamilySource"]
 
 MAX_KEPT = 256
-"""Pieces that are kept; that which was not asked for for longest is dropped first."""
+"""Most pieces that are kept; the one that was not asked for for longest is dropped first."""
 
 _made: OrderedDict[PieceName, Asset] = OrderedDict()
 _lock = threading.Lock()

@@ -1,4 +1,4 @@
-"""What pieces are made of: woods, metals, fabrics, glass, with density and finish.
+"""Materials of pieces: woods, metals, fabrics, glass, with density and finish.
 
 A name and a colour in, a `Stuff` out. Fine structures are the catalogue's own patterns.
 """
@@ -84,7 +84,13 @@ def colour_of(text: str) -> Vector3:
 
 def _patterned(name: str, pattern: str, colour: str, roughness: float, density: float) -> Stuff:
     maps = pattern_maps(PATTERNS[pattern])
-    made = Material(name=name, base_colour=(*colour_of(colour), 1.0), roughness=roughness, **maps)
+    made = Material(
+        name=name,
+        base_colour=(*colour_of(colour), 1.0),
+        roughness=roughness,
+        base_colour_texture=maps["base_colour_texture"],
+        normal_texture=maps.get("normal_texture"),
+    )
     return Stuff(made, PATTERNS[pattern].tile_m, density)
 
 

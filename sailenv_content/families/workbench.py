@@ -29,7 +29,7 @@ Collides = Literal["hull", "box", "none"]
 
 
 class Unfit(Exception):
-    """What was drawn makes no sound piece: it is drawn again."""
+    """A draw that makes no sound piece: another is made."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +47,7 @@ class Joint:
 
 @dataclass(slots=True, kw_only=True)
 class Work:
-    """What belongs to one part of a piece, or to its body.
+    """All that belongs to one part of a piece, or to its body.
 
     Attributes
     ----------
@@ -117,7 +117,7 @@ class Workbench:
         if collides and plain:
             self._at.shapes.append(_box_shape(sides, at, turn))
         elif collides:
-            self._at.shapes.append(convex_hull(mesh.positions))
+            self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
 
     def form(
         self,
