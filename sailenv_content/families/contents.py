@@ -1,4 +1,4 @@
-"""What furniture is filled with: books in rows, folded clothes, clothes on a rail, plates, jars.
+"""Contents of furniture: books in rows, folded clothes, clothes on a rail, plates, jars.
 
 Parts of the piece, each labelled as what it is; they go where their carrier goes.
 """

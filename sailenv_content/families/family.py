@@ -20,8 +20,8 @@ class Style:
     ----------
     make : callable
         ``make(bench, values)`` puts the piece together: x to its front, z up, the origin at the
-        middle of its base (of what hangs on a wall: at the lower middle of its back, of what hangs
-        from a ceiling: at its lowest point). It may raise `Unfit`.
+        middle of its base (on a wall: at the lower middle of its back, below a
+        ceiling: at its lowest point). It may raise `Unfit`.
     parameters : mapping
         By name: `Span`, `Whole`, `Choice`, or a value that is always the same.
     category : str

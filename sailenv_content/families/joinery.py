@@ -1,4 +1,4 @@
-"""What several families are made of: legs, carcasses, shelves.
+"""Constructions of several families: legs, carcasses, shelves.
 
 A `Workbench` and measures in [m] in; forms are added where the bench works. The front is at +x.
 """

@@ -122,7 +122,7 @@ def _asset(family: Family, name: PieceName, bench: Workbench) -> Asset:
 
 
 Drawn = dict[str, list[ModelPart]]
-"""What is drawn of each work, by its name."""
+"""Meshes of each work, by its name."""
 
 
 def _moving(

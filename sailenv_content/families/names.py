@@ -1,11 +1,9 @@
-"""Names of pieces: ``FAMILY~STYLE:SEED``, and ``FAMILY~STYLE:SEED/PART`` of what opens of one."""
+"""Names of pieces: ``FAMILY~STYLE:SEED``, and ``FAMILY~STYLE:SEED#PART`` of a door or drawer."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-
-from sailenv_ros.types.labels import PART_MARK
 
 __all__ = ["FORM", "MAX_SEED", "PieceName", "has_form", "parsed"]
 
@@ -13,7 +11,10 @@ FORM = "FAMILY~STYLE:SEED"
 MAX_SEED = 2**31 - 1
 
 _MARK = "~"
-_NAME = re.compile(r"([a-z][a-z0-9_]*)~([a-z][a-z0-9_]*):(0|[1-9][0-9]{0,9})(?:/(.+))?")
+_PART_MARK = "#"
+"""Not that of parts of a model, which are no assets: a door is an object with parts of its own."""
+
+_NAME = re.compile(r"([a-z][a-z0-9_]*)~([a-z][a-z0-9_]*):(0|[1-9][0-9]{0,9})(?:#(.+))?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +33,7 @@ class PieceName:
 
     def of_part(self, part: str) -> str:
         """Return the name of a part of the piece."""
-        return f"{self.whole}{PART_MARK}{part}"
+        return f"{self.whole}{_PART_MARK}{part}"
 
 
 def has_form(name: str) -> bool:

@@ -1,4 +1,4 @@
-"""Which families there are, and which module makes each; none is imported before it is needed."""
+"""Families by name, each with the module that makes it; none is imported before it is needed."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _lock = threading.Lock()
 
 
 class FamilySource:
-    """Pieces by their names, ``FAMILY~STYLE:SEED``, and what opens of them, ``…/PART``."""
+    """Pieces by their names, ``FAMILY~STYLE:SEED``, and what opens of them, ``…#PART``."""
 
     @property
     def display_names(self) -> Mapping[str, str]:

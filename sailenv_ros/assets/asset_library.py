@@ -178,10 +178,7 @@ class AssetLibrary:
         UnknownName, AssetError
             As `get`, also if the asset has no such part.
         """
-        if name in self._name_of or not self.has(name):
-            whole, mark, wanted = name.partition(PART_MARK)
-        else:  # of a piece that opens, a part may be an asset itself
-            whole, mark, wanted = name, "", ""
+        whole, mark, wanted = name.partition(PART_MARK)
         asset = self.peek(whole)
         if not mark:
             return asset.body_model

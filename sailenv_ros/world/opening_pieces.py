@@ -1,4 +1,4 @@
-"""What opens of a piece of furniture → objects on joints of their own, each as a scene file has it.
+"""Opening parts of a piece of furniture → objects on joints, each as a scene file has it.
 
 The entry of a piece and its asset in, further entries out. A piece that stands still carries its
 doors and drawers on joints; one that moves freely, or comes and goes, keeps them shut.

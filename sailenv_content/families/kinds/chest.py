@@ -169,7 +169,7 @@ _SCHEMES = (
     (wood("oak"), _SAGE, wood("oak")),
     (wood("black oak"), wood("walnut"), wood("black oak")),
 )
-"""What sides, fronts and top are made of, that go together."""
+"""Materials of sides, fronts and top that go together."""
 
 _STUFF = {
     "scheme": Choice(*_SCHEMES),

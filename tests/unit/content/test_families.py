@@ -183,7 +183,7 @@ def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
     with closing(world_of({"name": "it", "asset": "chest~dresser:0", "static": True})) as world:
         named = {drawn.instance.name: drawn for drawn in world.snapshot().contents.instances}
         drawer = named["it drawer 1"].instance
-        assert (drawer.category, drawer.asset) == ("drawer", "chest~dresser:0/drawer 1")
+        assert (drawer.category, drawer.asset) == ("drawer", "chest~dresser:0#drawer 1")
         assert drawer.parent == named["it"].instance.id
         handle = named["it drawer 1/handle"].instance
         assert (handle.category, handle.parent) == ("handle", drawer.id)
@@ -216,7 +216,7 @@ def test_an_entry_of_its_own_takes_the_place_of_what_opens() -> None:
         "limits": [0, 0.2],
         "position": 0.1,
     }
-    mine = {"name": "my drawer", "asset": f"{name}/drawer 1", "joint": joint}
+    mine = {"name": "my drawer", "asset": f"{name}#drawer 1", "joint": joint}
     count = len(LIBRARY.get(name).moving)
     with closing(world_of({"name": "it", "asset": name, "static": True}, mine)) as world:
         names = [body.placement.name for body in world.bodies]
