@@ -249,7 +249,7 @@ def test_spawned_pieces_open_and_go_with_what_opens(tmp_path: Path) -> None:
         ("chair~dining", "FAMILY~STYLE:SEED"),
         ("chair~dining:-1", "FAMILY~STYLE:SEED"),
         ("chair~dining:99999999999", "FAMILY~STYLE:SEED"),
-        ("chest~tv:2/top", "moving part of 'chest~tv:2'"),
+        ("chest~tv:2#top", "moving part of 'chest~tv:2'"),
     ],
 )
 def test_names_are_refused_in_words_and_at_their_place(name: str, why: str, tmp_path: Path) -> None:
