@@ -60,15 +60,17 @@ class SceneEditor:
         What opens of a piece that stands still comes with it, as objects of their own.
         """
         world, library = self.scene.world, self.scene.library
-        since = {"seed": self.scene.seed, "start_s": self.scene.now_s}
-        placement = library.placement(entry, pose, world, **since)
+        seed, start_s = self.scene.seed, self.scene.now_s
+        placement = library.placement(entry, pose, world, seed=seed, start_s=start_s)
         spec = placement.entry
         assert spec is not None
         instance_id = world.spawn(placement)
         try:
             for part in moving_entries((spec,), {spec.name: library.peek_asset(spec.asset)}):
                 described = part.model_dump(exclude_unset=True)
-                world.spawn(library.placement(described, part.pose, world, **since))
+                world.spawn(
+                    library.placement(described, part.pose, world, seed=seed, start_s=start_s)
+                )
         except BaseException:
             world.despawn(instance_id)
             raise
