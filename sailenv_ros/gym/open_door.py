@@ -15,9 +15,9 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 from typing_extensions import Unpack
 
-from sailenv_ros.gym.errands import STEP_COST, SUCCESS_REWARD
 from sailenv_ros.gym.eye import Look
 from sailenv_ros.gym.ground import random_cell
+from sailenv_ros.gym.navigation import STEP_COST, SUCCESS_REWARD
 from sailenv_ros.gym.point_nav import EYE_M, NEAR, STRIDE, TURN
 from sailenv_ros.gym.room import DOOR_STEPS, Door
 from sailenv_ros.gym.room_env import Info, RoomEnv

@@ -12,9 +12,9 @@ import numpy as np
 from gymnasium import spaces
 from typing_extensions import Unpack
 
-from sailenv_ros.gym.errands import Errand
 from sailenv_ros.gym.eye import Look
 from sailenv_ros.gym.ground import random_cell, way_length_m
+from sailenv_ros.gym.navigation import Navigation
 from sailenv_ros.gym.room_env import Info, RoomEnv
 from sailenv_ros.gym.room_settings import RoomSettings
 from sailenv_ros.gym.walker import Walker
@@ -71,7 +71,7 @@ class PointNavEnv(RoomEnv):
         self._walker = Walker(0.0, 0.0, 0.0, EYE_M)
         self._goal = (0.0, 0.0, 0.0)
         self._stopped = False
-        self._errand: Errand
+        self._navigation: Navigation
 
     def _actions(self) -> spaces.Space[Any]:
         return spaces.Discrete(4) if self.discrete else spaces.Box(-1.0, 1.0, (3,), np.float32)
@@ -92,7 +92,7 @@ class PointNavEnv(RoomEnv):
         cell = space.cell_of(start)
         assert cell is not None
         shortest_m = way_length_m(space, start, self._goal)
-        self._errand = Errand(space, distances_m, shortest_m, float(distances_m[cell]))
+        self._navigation = Navigation(space, distances_m, shortest_m, float(distances_m[cell]))
         self._stopped = False
         return True
 
@@ -114,13 +114,13 @@ class PointNavEnv(RoomEnv):
     def _judge(self, look: Look) -> tuple[float, bool]:
         if not self._steps:
             return 0.0, False
-        errand = self._errand
-        arrived = errand.distance_m <= self._near_m
-        reward = errand.judge(self._walker, ended=self._stopped, arrived=arrived)
+        navigation = self._navigation
+        arrived = navigation.distance_m <= self._near_m
+        reward = navigation.judge(self._walker, ended=self._stopped, arrived=arrived)
         return reward, self._stopped
 
     def _info(self) -> Info:
-        return self._errand.info(self._walker)
+        return self._navigation.info(self._walker)
 
     def _eye_pose(self) -> Pose:
         return self._walker.eye_pose(self.room.space.body.floor_m)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.authoring.viewpoints.object_targets import boxes_of
+from sailenv_ros.authoring.viewpoints.object_targets import boxes_in_world, boxes_of
 from sailenv_ros.errors import NoFreeSpace
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.finished_light import bake_missing
@@ -143,11 +143,7 @@ class Room:
     @cached_property
     def boxes(self) -> NDArray[np.float64]:
         """(N, 2, 3) lowest and highest corner of the box around each instance, in the world [m]."""
-        ends, poses = self.own_boxes, self.snapshot.world_from_body
-        middles = np.append(ends.mean(axis=1), np.ones((len(ends), 1)), axis=1)
-        centres = np.einsum("nij,nj->ni", poses, middles)[:, :3]
-        halves = np.einsum("nij,nj->ni", np.abs(poses[:, :3, :3]), np.ptp(ends, axis=1) / 2.0)
-        return np.stack([centres - halves, centres + halves], axis=1)
+        return boxes_in_world(self.own_boxes, self.snapshot.world_from_body)
 
     @cached_property
     def rows(self) -> Mapping[str, int]:

@@ -14,9 +14,9 @@ from gymnasium import spaces
 from typing_extensions import Unpack
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.gym.errands import Errand
 from sailenv_ros.gym.eye import Look
 from sailenv_ros.gym.ground import near_boxes, random_cell, way_length_m
+from sailenv_ros.gym.navigation import Navigation
 from sailenv_ros.gym.point_nav import EYE_M, NEAR, STRIDE, TURN
 from sailenv_ros.gym.room_env import Info, RoomEnv
 from sailenv_ros.gym.room_settings import RoomSettings
@@ -88,7 +88,7 @@ class SearchEnv(RoomEnv):
         self._walker = Walker(0.0, 0.0, 0.0, EYE_M)
         self._goal, self._goal_id, self._pixels = "", 0, 0
         self._declared = False
-        self._errand: Errand
+        self._navigation: Navigation
 
     def _actions(self) -> spaces.Space[Any]:
         return spaces.Discrete(6) if self.discrete else spaces.Box(-1.0, 1.0, (4,), np.float32)
@@ -117,7 +117,7 @@ class SearchEnv(RoomEnv):
         reach = np.where(near, space.distances_m(start), np.inf)
         row, column = divmod(int(np.argmin(reach)), reach.shape[1])
         shortest_m = way_length_m(space, start, space.position_of(row, column))
-        self._errand = Errand(space, distances_m, shortest_m, float(distances_m[cell]))
+        self._navigation = Navigation(space, distances_m, shortest_m, float(distances_m[cell]))
         self._goal = category
         first = self.room.objects[category][0]
         self._goal_id = self.room.snapshot.contents.instances[first].instance.category_id
@@ -140,13 +140,13 @@ class SearchEnv(RoomEnv):
         if not self._steps:
             return 0.0, False
         seen = self._pixels >= self._seen_share * category.size
-        arrived = seen and self._errand.distance_m == 0.0
-        reward = self._errand.judge(self._walker, ended=self._declared, arrived=arrived)
+        arrived = seen and self._navigation.distance_m == 0.0
+        reward = self._navigation.judge(self._walker, ended=self._declared, arrived=arrived)
         return reward, self._declared
 
     def _info(self) -> Info:
         return {
-            **self._errand.info(self._walker),
+            **self._navigation.info(self._walker),
             "category": self._goal,
             "goal_pixels": self._pixels,
         }

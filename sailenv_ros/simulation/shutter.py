@@ -144,19 +144,20 @@ class _Track:
         snapshot = replace(snapshot, sim_time_ns=middle_ns)
         if not self.moves:
             return Observation(snapshot=snapshot, camera=camera)
-        instant = np.array([float(middle_ns)])
+        times = middle_ns + offsets_ns if camera.picture.rolls else np.zeros(0)
+        instants = np.append(float(middle_ns), times)  # the middle, then the rows
+        seen = self._between(self._cameras[:, None], instants)[:, 0]
+        placed = self._between(self._poses, instants)
         poses = snapshot.world_from_body.copy()
-        poses[self.moving] = self._between(self._poses, instant)[0]
-        seen = self._between(self._cameras[:, None], instant)[0, 0]
-        pose = Pose.from_matrix(seen @ invert(BODY_FROM_OPTICAL))
+        poses[self.moving] = placed[0]
+        pose = Pose.from_matrix(seen[0] @ invert(BODY_FROM_OPTICAL))
         rows = None
         if camera.picture.rolls:
-            times = middle_ns + offsets_ns
             rows = RowPoses(
                 times_ns=np.round(times).astype(np.int64),
-                world_from_camera=self._between(self._cameras[:, None], times)[:, 0],
+                world_from_camera=seen[1:],
                 ids=snapshot.contents.instance_ids[self.moving],
-                world_from_instance=self._between(self._poses, times),
+                world_from_instance=placed[1:],
             )
         return Observation(
             snapshot=replace(snapshot, world_from_body=poses),

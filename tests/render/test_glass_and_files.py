@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.frame.pictures.codecs import decode_picture, encode_jpeg
-from sailenv_ros.render.picture.optics import through_glass
+from sailenv_ros.render.picture.optics import through_lens
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.picture_settings import PictureSettings
@@ -35,7 +35,7 @@ def test_light_falls_off_with_the_fourth_power_of_the_cosine(
 ) -> None:
     """Of a grey picture, at each pixel, to half precision; the fourth number stays."""
     grey = np.full((120, 160, 4), 0.5, np.float16)
-    light = through_glass(grey, lens, PictureSettings(vignetting=strength))
+    light = through_lens(grey, lens, PictureSettings(vignetting=strength))
     cosine = lens.unit_rays()[..., 2].clip(0.0, 1.0)
     expected = 0.5 * (1.0 - strength * (1.0 - cosine**4))
     np.testing.assert_allclose(light[..., :3], expected[..., None].repeat(3, -1), atol=5e-4)
@@ -48,7 +48,7 @@ def test_red_and_blue_pictures_have_other_sizes_around_the_axis() -> None:
     u, v = np.meshgrid(np.arange(160.0), np.arange(120.0))
     ramp = np.zeros((120, 160, 4), np.float16)
     ramp[..., :3] = (4.0 + 0.01 * (u - lens.cx) + 0.02 * (v - lens.cy))[..., None]
-    light = through_glass(ramp, lens, PictureSettings(lateral_colour=0.01)).astype(np.float64)
+    light = through_lens(ramp, lens, PictureSettings(lateral_colour=0.01)).astype(np.float64)
     inside = (slice(2, -2), slice(2, -2))
     away = light[..., 1] - 4.0
     np.testing.assert_array_equal(light[..., 1], ramp[..., 1].astype(np.float64))

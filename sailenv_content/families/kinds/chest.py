@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sailenv_content.families.contents import plates, stores
 from sailenv_content.families.family import Family, Style
-from sailenv_content.families.fronts import CLEARANCE_M, door, drawer
+from sailenv_content.families.fronts import CLEARANCE_M, FrontKind, door, drawer
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import carcass, four_legs, shelf
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
@@ -28,6 +28,39 @@ def _body(b: Workbench, v: Values) -> tuple[Box, Box]:
     return inside, fronts.inset(CLEARANCE_M)
 
 
+def _drawer(
+    b: Workbench, v: Values, name: str, panel: Box, inside: Box, *, front: FrontKind | None = None
+) -> None:
+    """Add a drawer of the chest's materials; its front is the chest's unless told otherwise."""
+    drawer(
+        b,
+        name,
+        v.scheme[1],
+        front or v.front,
+        panel,
+        inside.size[0] - 0.03,
+        inner=v.inner,
+        handle_kind=v.handle,
+        metal_=v.metal,
+        side_gap=0.03,
+    )
+
+
+def _outer_doors(b: Workbench, v: Values, right: Box, left: Box) -> None:
+    """Add two doors with their hinges at the outer sides."""
+    for side, panel in (("right", right), ("left", left)):
+        door(
+            b,
+            f"{side} door",
+            v.scheme[1],
+            v.front,
+            panel,
+            hinge=side,
+            handle_kind=v.handle,
+            metal_=v.metal,
+        )
+
+
 def _drawers(b: Workbench, v: Values) -> None:
     """Fill the front with rows of drawers."""
     inside, fronts = _body(b, v)
@@ -35,18 +68,7 @@ def _drawers(b: Workbench, v: Values) -> None:
     for row in fronts.rows([1.15**k for k in range(v.rows)][::-1], CLEARANCE_M):
         for panel in row.columns([1.0] * v.columns, CLEARANCE_M):
             number += 1
-            drawer(
-                b,
-                f"drawer {number}",
-                v.scheme[1],
-                v.front,
-                panel,
-                inside.size[0] - 0.03,
-                inner=v.inner,
-                handle_kind=v.handle,
-                metal_=v.metal,
-                side_gap=0.03,
-            )
+            _drawer(b, v, f"drawer {number}", panel, inside)
     if v.columns == 2:
         b.box(
             v.inner,
@@ -72,39 +94,9 @@ def _doors(b: Workbench, v: Values) -> None:
         plates(b, Box((room.low[0], room.low[1], z), room.high))
         stores(b, Box(room.low, (room.high[0], room.high[1], z - 0.02)))
     right, middle, left = fronts.columns([1.0, 1.0, 1.0], CLEARANCE_M)
-    door(
-        b,
-        "right door",
-        v.scheme[1],
-        v.front,
-        right,
-        hinge="right",
-        handle_kind=v.handle,
-        metal_=v.metal,
-    )
-    door(
-        b,
-        "left door",
-        v.scheme[1],
-        v.front,
-        left,
-        hinge="left",
-        handle_kind=v.handle,
-        metal_=v.metal,
-    )
+    _outer_doors(b, v, right, left)
     for number, panel in enumerate(middle.rows([1.0] * v.rows, CLEARANCE_M)):
-        drawer(
-            b,
-            f"drawer {number + 1}",
-            v.scheme[1],
-            "flat",
-            panel,
-            inside.size[0] - 0.03,
-            inner=v.inner,
-            handle_kind=v.handle,
-            metal_=v.metal,
-            side_gap=0.03,
-        )
+        _drawer(b, v, f"drawer {number + 1}", panel, inside, front="flat")
 
 
 def _tv(b: Workbench, v: Values) -> None:
@@ -122,39 +114,9 @@ def _tv(b: Workbench, v: Values) -> None:
     right, _, left = fronts.columns([1.0, 1.2, 1.0], CLEARANCE_M)
     if v.drawers:
         for name, panel in (("right drawer", right), ("left drawer", left)):
-            drawer(
-                b,
-                name,
-                v.scheme[1],
-                v.front,
-                panel,
-                inside.size[0] - 0.03,
-                inner=v.inner,
-                handle_kind=v.handle,
-                metal_=v.metal,
-                side_gap=0.03,
-            )
+            _drawer(b, v, name, panel, inside)
     else:
-        door(
-            b,
-            "right door",
-            v.scheme[1],
-            v.front,
-            right,
-            hinge="right",
-            handle_kind=v.handle,
-            metal_=v.metal,
-        )
-        door(
-            b,
-            "left door",
-            v.scheme[1],
-            v.front,
-            left,
-            hinge="left",
-            handle_kind=v.handle,
-            metal_=v.metal,
-        )
+        _outer_doors(b, v, right, left)
 
 
 _WHITE, _DARK, _SAGE, _BLUE = (paint(c) for c in ("#e9e6df", "#33373b", "#8c9a86", "#54616b"))

@@ -100,6 +100,22 @@ def boxes_of(snapshot: WorldSnapshot) -> NDArray[np.float64]:
     return np.stack([entry.model.bounds() * np.asarray(entry.scale) for entry in drawn])
 
 
+def boxes_in_world(boxes: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return (N, 2, 3) the lowest and the highest corner of the boxes around turned boxes [m].
+
+    Parameters
+    ----------
+    boxes : (N, 2, 3) float64
+        Corners in axes of their own [m]; see `boxes_of`.
+    poses : (N, 4, 4) float64
+        World from these axes.
+    """
+    middles = np.append(boxes.mean(axis=1), np.ones((len(boxes), 1)), axis=1)
+    centres = np.einsum("nij,nj->ni", poses, middles)[:, :3]
+    halves = np.einsum("nij,nj->ni", np.abs(poses[:, :3, :3]), np.ptp(boxes, axis=1) / 2.0)
+    return np.stack([centres - halves, centres + halves], axis=1)
+
+
 def targets_of(
     room: str, snapshot: WorldSnapshot, boxes: NDArray[np.float64], category: str
 ) -> Iterator[Target]:

@@ -180,12 +180,13 @@ def _object_points_by_rows(
     points = rows_moved(poses.rows.world_from_camera, points)
     found = np.full(points.shape, np.nan, np.float32)
     seen = np.isfinite(depth)
-    for id_, world_from_instance in zip(poses.ids, poses.world_from_instance, strict=True):
+    _, known, _ = np.intersect1d(poses.ids, instance[seen], return_indices=True)
+    for id_, world_from_instance in zip(
+        poses.ids[known], poses.world_from_instance[known], strict=True
+    ):
         v, u = np.nonzero(seen & (instance == id_))
-        if len(v):
-            to_own = invert(poses.rows.of_instance(int(id_), world_from_instance)[v])
-            own = np.einsum("nij,nj->ni", to_own[:, :3, :3], points[v, u]) + to_own[:, :3, 3]
-            found[v, u] = own
+        to_own = invert(poses.rows.of_instance(int(id_), world_from_instance)[v])
+        found[v, u] = np.einsum("nij,nj->ni", to_own[:, :3, :3], points[v, u]) + to_own[:, :3, 3]
     return found
 
 

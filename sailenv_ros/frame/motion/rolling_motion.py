@@ -43,7 +43,8 @@ def rolling_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     group_of_instance[ids] = _STILL
     group_of_instance[ids[moving]] = np.arange(len(moving)) + _FIRST
     group_of_instance[0] = _SKY
-    seen, sees = _world_from_camera(begin), invert(_world_from_camera(end))
+    seen, stands = _world_from_camera(begin), _world_from_camera(end)
+    sees = invert(stands)
     groups = _FIRST + len(moving)
     own_from_rows = np.zeros((groups, len(seen), 3, 4))
     rows_from_own = np.zeros((groups, len(sees), 3, 4))
@@ -54,7 +55,7 @@ def rolling_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
         now = _world_from_instance(end, int(ids[row]), last[row])
         own_from_rows[group] = (invert(then) @ seen)[:, :3]
         rows_from_own[group] = (sees @ now)[:, :3]
-    is_still = bool((seen == seen[0]).all() and (invert(sees) == invert(sees)[0]).all())
+    is_still = bool((seen == seen[0]).all() and (stands == stands[0]).all())
     is_still &= np.array_equal(begin.camera.world_from_camera, end.camera.world_from_camera)
     at_rest = np.zeros(groups, np.bool_)
     at_rest[[_SKY, _STILL]] = is_still

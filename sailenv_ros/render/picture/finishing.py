@@ -92,6 +92,7 @@ class DrawingRenderer(ABC):
         if lit:
             if light is None:
                 light = self._light_of(now, arrays, surface)
+            light = self._post.through_lens(light, camera)
             if "rgb" in wanted:
                 arrays["rgb"] = self._post.developed(light, snapshot, camera)
             if "raw" in wanted:
@@ -157,7 +158,7 @@ class DrawingRenderer(ABC):
         -------
         arrays : dict of str to array
             ``surface`` (H, W, 2) float32, depth [m] and instance id; with a picture ``rgb``, its
-            radiance (see `PostPass.finished`), and with supersampling perhaps ``samples``; other
+            radiance (see `PostPass.gathered`), and with supersampling perhaps ``samples``; other
             views that are made already. The time of each stage is added to `timings`.
         """
 

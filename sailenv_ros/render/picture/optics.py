@@ -14,10 +14,10 @@ from sailenv_ros.frame.lens_rays import depth_shares
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.picture_settings import PictureSettings
 
-__all__ = ["through_glass"]
+__all__ = ["through_lens"]
 
 
-def through_glass(
+def through_lens(
     radiance: NDArray[np.float16], lens: CameraIntrinsics, settings: PictureSettings
 ) -> NDArray[np.float16]:
     """Let light through a lens.

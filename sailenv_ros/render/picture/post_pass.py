@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.render.picture import ambient_occlusion, supersampling, tone_map
-from sailenv_ros.render.picture.optics import through_glass
+from sailenv_ros.render.picture.optics import through_lens
 from sailenv_ros.render.picture.raw_data import raw_data
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.render.picture.tone import code_table
@@ -106,7 +106,6 @@ class PostPass:
     def developed(self, light: Light, snapshot: WorldSnapshot, camera: Camera) -> NDArray[np.uint8]:
         """Return (H, W, 3) uint8: the sRGB picture of light; a fresh array."""
         settings = camera.picture
-        light = self._through_glass(light, camera)
         if settings.bloom > 0.0 or settings.full_well > 0.0:
             # Light is spread and counted as it arrives at the sensor.
             radiance = sensor_light(
@@ -125,18 +124,18 @@ class PostPass:
     def raw(self, light: Light, snapshot: WorldSnapshot, camera: Camera) -> NDArray[np.uint16]:
         """Return (H, W) uint16: what the sensor counts of light; a fresh array."""
         name, now_ns, settings = camera.name, snapshot.sim_time_ns, camera.picture
-        arriving = self.at_sensor(self._through_glass(light, camera))
+        arriving = self.at_sensor(light)
         if settings.bloom > 0.0:
             quiet = replace(settings, full_well=0.0)
             arriving = sensor_light(arriving, quiet, name, now_ns, threads=self._threads)
         return raw_data(arriving, settings, name, now_ns)
 
-    def _through_glass(self, light: Light, camera: Camera) -> Light:
+    def through_lens(self, light: Light, camera: Camera) -> Light:
         """Return light as the camera's lens leaves it."""
         settings = camera.picture
         if not settings.lateral_colour and not settings.vignetting:
             return light
-        return Light(through_glass(self.at_sensor(light), camera.intrinsics, settings))
+        return Light(through_lens(self.at_sensor(light), camera.intrinsics, settings))
 
 
 def _from_jpeg(rgb: NDArray[np.uint8], quality: int) -> NDArray[np.uint8]:

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sailenv_ros.authoring.viewpoints.object_targets import boxes_of
+from sailenv_ros.authoring.viewpoints.object_targets import boxes_in_world, boxes_of
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
@@ -92,13 +92,8 @@ class SpaceOperations(Caller):
         inside = [drawn.outside is None for drawn in snapshot.contents.instances]
         if not any(inside):
             return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-        ends, poses = boxes_of(snapshot)[inside], snapshot.world_from_body[inside]
-        middles = np.append(ends.mean(axis=1), np.ones((len(ends), 1)), axis=1)
-        centres = np.einsum("nij,nj->ni", poses, middles)[:, :3]
-        halves = np.ptp(ends, axis=1) / 2.0
-        reaches = np.einsum("nij,nj->ni", np.abs(poses[:, :3, :3]), halves)
-        low, high = (centres - reaches).min(axis=0), (centres + reaches).max(axis=0)
-        return vector("low", low), vector("high", high)
+        boxes = boxes_in_world(boxes_of(snapshot)[inside], snapshot.world_from_body[inside])
+        return vector("low", boxes[:, 0].min(axis=0)), vector("high", boxes[:, 1].max(axis=0))
 
     @operation(**_BODY)
     @staticmethod

@@ -192,7 +192,7 @@ def test_an_object_is_found_near_it_and_with_it_in_view(make: Make) -> None:
     assert info["distance_to_goal_m"] > 0.0
     # To the nearest place from which it counts, then turned to the object.
     space = env.room.space
-    cells = np.argwhere(env._errand.distances_m == 0.0)
+    cells = np.argwhere(env._navigation.distances_m == 0.0)
     here = np.array([env._walker.x_m, env._walker.y_m])
     places = [space.position_of(row, column) for row, column in cells.tolist()]
     goal = min(places, key=lambda place: math.dist(here, place[:2]))

@@ -15,7 +15,7 @@ from sailenv_ros.gym.ground import distance_at
 from sailenv_ros.gym.walker import Walker
 from sailenv_ros.space.free_space import FreeSpace
 
-__all__ = ["STEP_COST", "SUCCESS_REWARD", "Errand"]
+__all__ = ["STEP_COST", "SUCCESS_REWARD", "Navigation"]
 
 STEP_COST = 0.01
 """Taken off the reward of each step."""
@@ -24,7 +24,7 @@ SUCCESS_REWARD = 10.0
 
 
 @dataclass(slots=True)
-class Errand:
+class Navigation:
     """A way to walk.
 
     Attributes
