@@ -171,6 +171,7 @@ def _death(status: int, limits: ImportLimits) -> str:
 def _serve(folder: Path) -> None:
     task = json.loads(sys.stdin.buffer.read())
     end_with_parent(task["parent"])
+    _load_libraries()
     _limit(task)
     answer: dict[str, Any] = {"refused": None}
     try:
@@ -199,6 +200,15 @@ def _imported(folder: Path, kind: str, settings: Mapping[str, Any]) -> Asset:
 
     path = Path(settings["path"])
     return import_asset(path, **{k: v for k, v in settings.items() if k != "path"})
+
+
+def _load_libraries() -> None:
+    """Load what reads models before memory is limited.
+
+    OpenBLAS asks for its buffer for ever where it cannot have one as it is loaded.
+    """
+    import scipy.linalg  # noqa: F401  # loaded for its library
+    import trimesh  # noqa: F401
 
 
 def _limit(task: Mapping[str, Any]) -> None:
