@@ -205,7 +205,7 @@ def _imported(folder: Path, kind: str, settings: Mapping[str, Any]) -> Asset:
 def _load_libraries() -> None:
     """Load what reads models before memory is limited.
 
-    OpenBLAS asks for its buffer for ever where it cannot have one as it is loaded.
+    OpenBLAS never stops asking for its buffer where it cannot have one as it is loaded.
     """
     import scipy.linalg  # noqa: F401  # loaded for its library
     import trimesh  # noqa: F401
