@@ -69,6 +69,7 @@ def frame_info_to_msg(
         render_s=float(frame.timings_s.get("render", 0.0)),
         has_states=frame.states is not None,
         randomised="" if frame.randomised is None else json.dumps(frame.randomised),
+        exposure=float(frame.exposure),
         lesson="" if frame.lesson is None else frame.lesson.to_json(),
         **_states_fields(frame.states),
     )

@@ -104,6 +104,7 @@ class _TarSource(FrameSource):
                 depth_range_m=told["depth_range_m"],
                 views=views,
                 randomised=told.get("randomised"),
+                exposure=told.get("exposure", 0.0),
             )
         except (OSError, tarfile.TarError, KeyError, ValueError, TypeError) as problem:
             raise RecordingError(f"{path} cannot be read: {problem}") from None

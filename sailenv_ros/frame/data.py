@@ -77,6 +77,8 @@ class FrameData(RebuiltByFields, Mapping[str, NDArray[Any]]):
     row_poses : RowPoses or None
         Poses by rows where a shutter rolled and something moved; None if all rows saw one instant,
         or they are not known (messages do not have them).
+    exposure : float
+        Stops that the picture was brightened by, besides the scene's.
     """
 
     agent: str
@@ -96,6 +98,7 @@ class FrameData(RebuiltByFields, Mapping[str, NDArray[Any]]):
     lesson: LessonState | None = None
     draw_amodal: DrawAmodal | None = None
     row_poses: RowPoses | None = None
+    exposure: float = 0.0
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width

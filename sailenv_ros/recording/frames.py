@@ -89,6 +89,7 @@ def frame_of_info(
         states=states_of_frame_info(info),
         randomised=randomised_of_frame_info(info),
         lesson=lesson_of_frame_info(info),
+        exposure=info.exposure,
     )
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.row_poses import RowPoses
-from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.snapshot import AdaptedExposure, Observation, WorldSnapshot
 
 __all__ = [
     "BACKEND_NAMES",
@@ -42,12 +42,15 @@ class RenderedViews:
     depth : (H, W) float32 or None
         The depth view, wanted or not, if it was made on the way: the next frame's past. Through a
         lens other than a pin-hole the view ``range``.
+    adapted : AdaptedExposure or None
+        Where the camera's exposure is automatic, that of this picture, or without one the previous.
     timings_s : mapping of str to float
         Wall time of each stage [s].
     """
 
     views: Mapping[str, NDArray[Any]]
     depth: NDArray[np.float32] | None
+    adapted: AdaptedExposure | None = None
     timings_s: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -95,7 +98,8 @@ class RenderBackend(Protocol):
         snapshot : WorldSnapshot
             The world now.
         previous : Observation or None
-            What the same camera saw before; None if flow has nothing to refer to.
+            What the same camera saw before, which flow and automatic exposure refer to; None if
+            there is nothing.
         camera : Camera
         views : iterable of str
             Names in `frame.VIEWS`.

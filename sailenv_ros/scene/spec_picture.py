@@ -32,6 +32,10 @@ class PictureSpec(SceneModel):
         default=_STANDARD.exposure,
         description="brightens this agent's picture, besides the environment's exposure [stops]",
     )
+    auto_exposure_s: Annotated[float, _number("auto_exposure_s")] = Field(
+        default=_STANDARD.auto_exposure_s,
+        description="time constant of automatic exposure [s]; 0: off",
+    )
     tone_curve: Annotated[ToneCurve, Choice(picture_choices()["tone_curve"])] = Field(
         default=_STANDARD.tone_curve,
         description="filmic rolls highlights off; linear is plain sRGB, cut off at white",

@@ -17,6 +17,7 @@ from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.light.relight.relighter import Relighter
 from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.picture.auto_exposure import with_exposure
 from sailenv_ros.simulation.agent_record import AgentRecord
 from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.simulation.shutter import exposed
@@ -120,7 +121,7 @@ class FrameMaker:
         rendered = self._renderer.render(
             snapshot, past, camera, views, rows=rows, samples=exposure.samples
         )
-        record.remember(replace(observed, depth=rendered.depth))
+        record.remember(replace(observed, depth=rendered.depth, adapted=rendered.adapted))
         record.sequence += 1
         return Frame(
             agent=record.spec.name,
@@ -139,6 +140,7 @@ class FrameMaker:
             row_poses=rows,
             randomised=randomised,
             lesson=lesson,
+            exposure=with_exposure(camera, rendered.adapted).picture.exposure,
             draw_amodal=lambda only=0: self.run_later(
                 lambda: self.draw_amodal(drawn_alone, camera, only)
             ),

@@ -36,6 +36,7 @@ ReadOut = Literal["down", "up"]
 
 LIMITS: Mapping[str, Bounds] = {
     "exposure": Bounds(least=-16.0, most=16.0, unit="stops"),
+    "auto_exposure_s": Bounds(least=0.0, most=60.0, unit="s"),
     "occlusion_strength": Bounds(least=0.0, most=1.0),
     "occlusion_radius_m": Bounds(least=0.01, most=5.0, unit="m"),
     "supersampling": Bounds(least=1, most=4, whole=True),
@@ -61,6 +62,9 @@ class PictureSettings:
     ----------
     exposure : float
         Stops that the picture is brightened by, on top of the scene's, -16 to 16.
+    auto_exposure_s : float
+        Time constant with which the exposure follows the light of the picture [s], 0 to 60;
+        `exposure` is then on top of it. 0 turns that off.
     tone_curve : {'filmic', 'linear'}
         ``filmic`` rolls highlights off as film does; ``linear`` is plain sRGB, cut off at white.
     occlusion_strength : float
@@ -111,6 +115,7 @@ class PictureSettings:
     """
 
     exposure: float = 0.0
+    auto_exposure_s: float = 0.0
     tone_curve: ToneCurve = "filmic"
     occlusion_strength: float = 0.6
     occlusion_radius_m: float = 0.25
@@ -196,6 +201,7 @@ class PictureChanges(TypedDict, total=False):
     """Some settings, by their names in `PictureSettings`."""
 
     exposure: float
+    auto_exposure_s: float
     tone_curve: ToneCurve
     occlusion_strength: float
     occlusion_radius_m: float

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ from sailenv_ros.types.model import Model
 from sailenv_ros.types.outside import Outside
 from sailenv_ros.types.row_poses import RowPoses
 
-__all__ = ["DrawnInstance", "Observation", "SceneContents", "WorldSnapshot"]
+__all__ = ["AdaptedExposure", "DrawnInstance", "Observation", "SceneContents", "WorldSnapshot"]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -151,6 +151,21 @@ class WorldSnapshot:
         self.histories.flags.writeable = False
 
 
+class AdaptedExposure(NamedTuple):
+    """Automatic exposure of a camera at one instant.
+
+    Attributes
+    ----------
+    stops : float
+        Stops that the picture is brightened by, besides the scene's and the camera's own.
+    sim_time_ns : int
+        When that was [ns].
+    """
+
+    stops: float
+    sim_time_ns: int
+
+
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Observation:
     """Observation of one camera: one to draw, or the past that flow and occlusion refer to.
@@ -165,9 +180,12 @@ class Observation:
     rows : RowPoses or None
         Where a shutter rolls and something moves, the poses of each row; snapshot and camera are
         those of the instant in the middle.
+    adapted : AdaptedExposure or None
+        Of its last picture, if its exposure is automatic.
     """
 
     snapshot: WorldSnapshot
     camera: Camera
     depth: NDArray[np.float32] | None = None
     rows: RowPoses | None = None
+    adapted: AdaptedExposure | None = None

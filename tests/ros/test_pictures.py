@@ -31,6 +31,7 @@ SMALL = {"width": 96, "height": 72}
 
 OTHERS: dict[str, Any] = {
     "exposure": -1.0,
+    "auto_exposure_s": 0.25,
     "tone_curve": "linear",
     "occlusion_strength": 0.0,
     "occlusion_radius_m": 2.0,

@@ -54,6 +54,7 @@ class WebDatasetExport(DatasetFormat):
             "agent": frame.agent,
             "epoch": frame.epoch,
             "depth_range_m": frame.depth_range_m,
+            "exposure": frame.exposure,
             "lens": lens.arguments(),
             "position": list(pose.position_m),
             "orientation_xyzw": list(pose.orientation_xyzw),

@@ -19,6 +19,7 @@ from sailenv_ros.frame.lens_rays import reach_view
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.contract import RenderedViews, require_drawable
 from sailenv_ros.render.picture.annotate import annotate, with_depth
+from sailenv_ros.render.picture.auto_exposure import with_exposure
 from sailenv_ros.render.picture.measured_depth import MEASURED_FROM, measured_depth
 from sailenv_ros.render.picture.post_pass import Light, PostPass
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
@@ -75,6 +76,9 @@ class DrawingRenderer(ABC):
         if "measured_depth" in wanted:
             drawn |= MEASURED_FROM
         lit = not wanted.isdisjoint(LIT_VIEWS)
+        adapted = None
+        if previous is not None and camera.picture.auto_exposure_s:
+            adapted = previous.adapted
         if lit:
             drawn |= {"rgb"}
         keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
@@ -93,10 +97,12 @@ class DrawingRenderer(ABC):
             if light is None:
                 light = self._light_of(now, arrays, surface)
             light = self._post.through_lens(light, camera)
+            adapted = self._post.adapted(light, snapshot, camera, adapted)
+            taken = with_exposure(camera, adapted)
             if "rgb" in wanted:
-                arrays["rgb"] = self._post.developed(light, snapshot, camera)
+                arrays["rgb"] = self._post.developed(light, snapshot, taken)
             if "raw" in wanted:
-                arrays["raw"] = self._post.raw(light, snapshot, camera)
+                arrays["raw"] = self._post.raw(light, snapshot, taken)
             timings["post"] = time.perf_counter() - began
             began = time.perf_counter()
         reach = reach_view(camera.intrinsics)
@@ -114,6 +120,7 @@ class DrawingRenderer(ABC):
             views={name: arrays[name] for name in wanted},
             # A caller may write into its own views; the past must stay what it was.
             depth=depth if reach not in wanted else depth.copy() if keeps_depth else None,
+            adapted=adapted,
             timings_s=timings,
         )
 

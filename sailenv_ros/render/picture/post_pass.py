@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.render.picture import ambient_occlusion, supersampling, tone_map
+from sailenv_ros.render.picture.auto_exposure import followed, metered_exposure
 from sailenv_ros.render.picture.optics import through_lens
 from sailenv_ros.render.picture.raw_data import raw_data
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.render.picture.tone import code_table
 from sailenv_ros.types.camera import Camera
-from sailenv_ros.types.snapshot import WorldSnapshot
+from sailenv_ros.types.snapshot import AdaptedExposure, WorldSnapshot
 
 __all__ = ["Light", "PostPass"]
 
@@ -102,6 +103,20 @@ class PostPass:
         return tone_map.apply_visibility(
             light.radiance, *light.shade, light.surface, threads=self._threads
         )
+
+    def adapted(
+        self,
+        light: Light,
+        snapshot: WorldSnapshot,
+        camera: Camera,
+        before: AdaptedExposure | None,
+    ) -> AdaptedExposure | None:
+        """Return the automatic exposure for this light; None where it is off."""
+        time_constant_s = camera.picture.auto_exposure_s
+        if not time_constant_s:
+            return None
+        wanted = metered_exposure(self.at_sensor(light))
+        return followed(before, wanted, snapshot.sim_time_ns, time_constant_s)
 
     def developed(self, light: Light, snapshot: WorldSnapshot, camera: Camera) -> NDArray[np.uint8]:
         """Return (H, W, 3) uint8: the sRGB picture of light; a fresh array."""

@@ -450,6 +450,7 @@ export interface MaterialChanges {
 /** Settings that change the picture and the measured depth; those of the shutter, instants too. */
 export interface PictureSettings {
   exposure: number;
+  auto_exposure_s: number;
   tone_curve: "filmic" | "linear";
   occlusion_strength: number;
   occlusion_radius_m: number;
@@ -472,6 +473,7 @@ export interface PictureSettings {
 /** Some settings, by their names in `PictureSettings`. */
 export interface PictureChanges {
   exposure?: number;
+  auto_exposure_s?: number;
   tone_curve?: "filmic" | "linear";
   occlusion_strength?: number;
   occlusion_radius_m?: number;

@@ -305,6 +305,7 @@ def frames(draw: st.DrawFn) -> Frame:
         states=draw(st.none() | instance_states()),
         randomised=draw(st.none() | st.dictionaries(TEXTS, COORDINATES, max_size=2)),
         lesson=draw(st.none() | lesson_states()),
+        exposure=draw(st.floats(-16.0, 16.0)),
     )
 
 
@@ -579,6 +580,7 @@ def test_frame_infos(frame: Frame, views: tuple[str, ...], depth_range_m: float)
         "far_m": frame.camera.intrinsics.far_m,
         "depth_range_m": depth_range_m,
         "render_s": frame.timings_s["render"],
+        "exposure": frame.exposure,
     }
     read = camera_of_frame_info(msg, frame.camera.intrinsics)
     np.testing.assert_allclose(

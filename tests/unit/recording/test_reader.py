@@ -298,9 +298,13 @@ class _WithoutStates:
 
     def write(self, topic: str, parts: Any, log_ns: int) -> None:
         if topic.endswith("frame_info"):
-            # A false, three bytes that fill up, three empty arrays, and two empty texts with three
-            # bytes between them.
+            # A false, three bytes that fill up, three empty arrays, two empty texts with three bytes
+            # between them, bytes up to a multiple of eight, and a number of eight bytes.
             (data,) = parts
+            header, empty_text = 4, 5
+            end = len(bytes(data).rstrip(b"\0")) + empty_text - 1
+            assert len(data) == header + -(-(end - header) // 8) * 8 + 8
+            data = data[:end]
             assert data[-29] == 0
             assert not any(data[-25:-13])
             assert bytes(data[-13:]) == b"\x01\0\0\0\0" + bytes(3) + b"\x01\0\0\0\0"
