@@ -298,8 +298,8 @@ class _WithoutStates:
 
     def write(self, topic: str, parts: Any, log_ns: int) -> None:
         if topic.endswith("frame_info"):
-            # A false, three bytes that fill up, three empty arrays, two empty texts with three bytes
-            # between them, bytes up to a multiple of eight, and a number of eight bytes.
+            # A false, three bytes that fill up, three empty arrays, two empty texts with three
+            # bytes between them, bytes up to a multiple of eight, and a number of eight bytes.
             (data,) = parts
             header, empty_text = 4, 5
             end = len(bytes(data).rstrip(b"\0")) + empty_text - 1
