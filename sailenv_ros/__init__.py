@@ -2,8 +2,8 @@
 
 `Simulation` is the simulator in this process, without ROS. `Agent` is a camera in a simulator that
 runs as a ROS 2 node. `load_scene` reads a scene file, `load_calibration` the lens of a
-real camera, `show` shows a frame. They are imported when they are first used, so importing the
-package imports neither ROS nor OpenGL.
+real camera, `load_rig` several cameras, `show` shows a frame. They are imported when they are first
+used, so importing the package imports neither ROS nor OpenGL.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from sailenv_ros.frame.frame import Frame
     from sailenv_ros.frame.show import show
     from sailenv_ros.ros.client.agent import Agent
-    from sailenv_ros.scene.calibration_files import load_calibration
+    from sailenv_ros.scene.calibration_files import load_calibration, load_rig
     from sailenv_ros.scene.loader import load_scene
     from sailenv_ros.simulation import Simulation
     from sailenv_ros.types.agents import AgentSpec
@@ -39,6 +39,7 @@ __all__ = [
     "Simulation",
     "__version__",
     "load_calibration",
+    "load_rig",
     "load_scene",
     "look_at",
     "show",
@@ -54,6 +55,7 @@ _HOMES = {
     "RigCamera": "sailenv_ros.types.rigs",
     "Simulation": "sailenv_ros.simulation",
     "load_calibration": "sailenv_ros.scene.calibration_files",
+    "load_rig": "sailenv_ros.scene.calibration_files",
     "load_scene": "sailenv_ros.scene.loader",
     "look_at": "sailenv_ros.types.geometry",
     "show": "sailenv_ros.frame.show",

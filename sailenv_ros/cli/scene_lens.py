@@ -6,8 +6,10 @@ import argparse
 import json
 from pathlib import Path
 
-from sailenv_ros.scene.calibration_files import load_calibration
-from sailenv_ros.scene.serialisation import lens_entry
+import yaml
+
+from sailenv_ros.scene.calibration_files import load_calibration, load_rig
+from sailenv_ros.scene.serialisation import camera_entries, lens_entry
 
 __all__ = ["add_arguments", "show_lens"]
 
@@ -24,6 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--camera", metavar="NAME", help="which, of a file with several: cam1, or COLMAP's number"
     )
     parser.add_argument(
+        "--rig", action="store_true", help="all cameras of a camchain.yaml, as an agent's rig"
+    )
+    parser.add_argument(
         "--max-angle",
         type=float,
         default=0.0,
@@ -34,6 +39,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def show_lens(args: argparse.Namespace) -> int:
     """Print the keys, one a line."""
+    if args.rig:
+        entries = camera_entries(load_rig(args.file, max_angle_deg=args.max_angle))
+        print(yaml.safe_dump({"cameras": entries}, sort_keys=False, default_flow_style=None))
+        return 0
     lens = load_calibration(args.file, camera=args.camera, max_angle_deg=args.max_angle)
     for key, value in lens_entry(lens).items():
         print(f"{key}: {json.dumps(value)}")

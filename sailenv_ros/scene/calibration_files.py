@@ -1,4 +1,4 @@
-"""Files of calibrations by other programs → `CameraIntrinsics`, or a `SceneError` with its place.
+"""Files of calibrations by other programs → `CameraIntrinsics`, a rig, or a `SceneError`.
 
 The `camera_info` YAML of camera_calibration and camera_info_manager, Kalibr's `camchain.yaml`,
 COLMAP's `cameras.txt`. They are data: nothing in them is run.
@@ -6,21 +6,23 @@ COLMAP's `cameras.txt`. They are data: nothing in them is run.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
-from sailenv_ros.errors import InvalidRequest, SceneDiagnostic, SceneError, UnknownName
+import numpy as np
+
+from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.scene.calibration_document import SIZE, CalibrationDocument
 from sailenv_ros.scene.documents import text_of_file
 from sailenv_ros.scene.messages import shown
-from sailenv_ros.scene.yaml_nodes import Loc, Mark, Node, compose
-from sailenv_ros.types.camera import INTRINSICS_LIMITS, CameraIntrinsics
-from sailenv_ros.types.validation import is_finite_number
+from sailenv_ros.scene.yaml_nodes import Mark, compose
+from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
+from sailenv_ros.types.rigs import RigCamera, checked_cameras
 
-__all__ = ["load_calibration"]
+__all__ = ["load_calibration", "load_rig"]
 
-_SIZE = INTRINSICS_LIMITS["width"]
 _MATRIX_NUMBERS = 9
 _PLUMB_BOB = "plumb_bob"
 
@@ -87,107 +89,77 @@ def load_calibration(
     UnknownName
         If there is no such camera in it.
     """
-    file = _File(Path(path))
     others = {"near_m": near_m, "far_m": far_m, "max_angle_deg": max_angle_deg}
-    text = text_of_file(file.path, "a calibration")
-    if file.path.suffix.lower() == ".txt":
-        return _of_colmap(file, text, camera, others)
-    node, found = compose(text)
+    if Path(path).suffix.lower() == ".txt":
+        file = CalibrationDocument(Path(path))
+        return _of_colmap(file, text_of_file(file.path, "a calibration"), camera, others)
+    file = _yaml_document(Path(path))
+    if "camera_matrix" in file.node.value:
+        return _of_camera_info(file, camera, others)
+    return _of_kalibr(file, camera, others)
+
+
+def load_rig(
+    path: str | Path,
+    *,
+    near_m: float = 0.05,
+    far_m: float = 100.0,
+    max_angle_deg: float = 0.0,
+) -> dict[str, RigCamera]:
+    """Read all cameras of Kalibr's `camchain.yaml` as a rig.
+
+    Its body is that of the first camera. The others are where their ``T_cn_cnm1`` say: (4, 4), what
+    the camera before has at a place, this one has at that place transformed, in optical axes.
+
+    Parameters
+    ----------
+    path : str or Path
+    near_m, far_m : float
+        Clip distances [m].
+    max_angle_deg : float
+        Where the image circles end [deg]; 0 if they end where the models do.
+
+    Returns
+    -------
+    cameras : dict of str to RigCamera
+        By the names in the file, in its order.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read, or is no calibration that makes a rig; with line and column.
+    """
+    file = _yaml_document(Path(path))
+    others = {"near_m": near_m, "far_m": far_m, "max_angle_deg": max_angle_deg}
+    cameras: dict[str, RigCamera] = {}
+    first_from_camera = np.eye(4)
+    for name in _kalibr_names(file):
+        if cameras:
+            before_from_camera = invert(file.rigid((name, "T_cn_cnm1")))
+            first_from_camera = first_from_camera @ before_from_camera
+        pose = BODY_FROM_OPTICAL @ first_from_camera @ invert(BODY_FROM_OPTICAL)
+        cameras[name] = RigCamera(
+            intrinsics=_of_kalibr(file, name, others), extrinsics=Pose.from_matrix(pose)
+        )
+    try:
+        return dict(checked_cameras(cameras))
+    except InvalidRequest as problem:
+        file.refuse(file.node.mark, f"makes no rig: {problem}")
+
+
+def _yaml_document(path: Path) -> CalibrationDocument:
+    file = CalibrationDocument(path)
+    node, found = compose(text_of_file(path, "a calibration"))
     if found:
         file.refuse(found[0].mark, found[0].message)
     if node is None or not isinstance(node.value, dict):
         file.refuse(Mark(1, 1), "must be a mapping: camera_info or Kalibr's camchain")
     file.node = node
-    if "camera_matrix" in node.value:
-        return _of_camera_info(file, camera, others)
-    return _of_kalibr(file, camera, others)
-
-
-@dataclass
-class _File:
-    """A file, and the place of its parts."""
-
-    path: Path
-    node: Node = field(default_factory=lambda: Node(Mark(1, 1), {}))
-
-    def refuse(self, mark: Mark, message: str, name: str = "") -> NoReturn:
-        """Raise the error of a place."""
-        raise SceneError(
-            [
-                SceneDiagnostic(
-                    path=str(self.path),
-                    line=mark.line,
-                    column=mark.column,
-                    field=name,
-                    message=message,
-                )
-            ]
-        )
-
-    def at(self, *loc: str | int) -> Node:
-        """Return a part that must be there."""
-        found: Node | None = self.node
-        for depth, part in enumerate(loc):
-            inner = None if found is None else found.child(part)
-            if inner is None:
-                self.refuse(self.node.place(loc[:depth]), "is missing", _dotted(loc))
-            found = inner
-        assert found is not None
-        return found
-
-    def numbers(self, loc: Loc, accepted: str, counts: Sequence[int] = ()) -> list[float]:
-        """Return a list of finite numbers."""
-        node = self.at(*loc)
-        values = node.plain()
-        fits = isinstance(values, list) and all(map(is_finite_number, values))
-        if not fits or (counts and len(values) not in counts):
-            self.refuse(node.mark, f"must be {accepted}, got {shown(values)}", _dotted(loc))
-        return [float(value) for value in values]
-
-    def size(self, loc: Loc) -> int:
-        """Return a width or a height."""
-        node = self.at(*loc)
-        accepted = _SIZE.refused(node.value)
-        if accepted:
-            self.refuse(node.mark, f"must be {accepted}, got {shown(node.plain())}", _dotted(loc))
-        return int(node.value)
-
-    def word(self, loc: Loc, known: Sequence[str]) -> str:
-        """Return a text that is one of those known."""
-        node = self.at(*loc)
-        if node.value not in known:
-            accepted = f"must be one of: {', '.join(known)}; got {shown(node.plain())}"
-            self.refuse(node.mark, accepted, _dotted(loc))
-        return str(node.value)
-
-    def lens(
-        self, mark: Mark, size: Sequence[int], matrix: Mapping[str, float], others: dict[str, Any]
-    ) -> CameraIntrinsics:
-        """Return what the numbers make, or refuse it at a place."""
-        width, height = size
-        if not (matrix["fx"] > 0.0 and matrix["fy"] > 0.0):
-            got = f"{matrix['fx']:g} and {matrix['fy']:g}"
-            self.refuse(mark, f"makes no lens: focal lengths must be above 0 [px], got {got}")
-        try:
-            return CameraIntrinsics(
-                width=width,
-                height=height,
-                fx_px=matrix["fx"],
-                fy_px=matrix["fy"],
-                cx_offset_px=matrix["cx"] - 0.5 * (width - 1),
-                cy_offset_px=matrix["cy"] - 0.5 * (height - 1),
-                **others,
-            )
-        except InvalidRequest as problem:
-            self.refuse(mark, f"makes no lens: {problem}")
-
-
-def _dotted(loc: Loc) -> str:
-    return ".".join(map(str, loc))
+    return file
 
 
 def _of_camera_info(
-    file: _File, camera: str | int | None, others: dict[str, Any]
+    file: CalibrationDocument, camera: str | int | None, others: dict[str, Any]
 ) -> CameraIntrinsics:
     if camera is not None:
         name = file.node.child("camera_name")
@@ -210,7 +182,8 @@ def _of_camera_info(
     return file.lens(model_node.mark, size, matrix, lens)
 
 
-def _of_kalibr(file: _File, camera: str | int | None, others: dict[str, Any]) -> CameraIntrinsics:
+def _kalibr_names(file: CalibrationDocument) -> list[str]:
+    """Return the names of a camchain's cameras; it must have one."""
     cameras = [
         key
         for key, child in file.node.value.items()
@@ -222,6 +195,13 @@ def _of_kalibr(file: _File, camera: str | int | None, others: dict[str, Any]) ->
             "has neither camera_matrix (of a camera_info) nor a camera with camera_model (of "
             "Kalibr's camchain)",
         )
+    return cameras
+
+
+def _of_kalibr(
+    file: CalibrationDocument, camera: str | int | None, others: dict[str, Any]
+) -> CameraIntrinsics:
+    cameras = _kalibr_names(file)
     chosen = cameras[0] if camera is None and len(cameras) == 1 else camera
     if chosen not in cameras:
         raise UnknownName("camera", "none" if chosen is None else str(chosen), cameras)
@@ -247,7 +227,7 @@ def _of_kalibr(file: _File, camera: str | int | None, others: dict[str, Any]) ->
 
 
 def _of_colmap(
-    file: _File, text: str, camera: str | int | None, others: dict[str, Any]
+    file: CalibrationDocument, text: str, camera: str | int | None, others: dict[str, Any]
 ) -> CameraIntrinsics:
     lines = {
         words[0]: (number, words)
@@ -286,7 +266,7 @@ def _of_colmap(
         accepted = f"must be {len(names)} parameters of {words[1]}: {order}"
         file.refuse(mark(min(4, len(words))), f"{accepted}; got {len(parameters)}")
     for index, side in ((2, width), (3, height)):
-        accepted = _SIZE.refused(int(side) if side.is_integer() else side)
+        accepted = SIZE.refused(int(side) if side.is_integer() else side)
         if accepted:
             file.refuse(mark(index), f"must be {accepted}, got {shown(words[index])}")
     told = dict(zip(names, parameters, strict=True))

@@ -37,6 +37,7 @@ __all__ = [
     "VELOCITY_KEYS",
     "agent_entry",
     "body_entry",
+    "camera_entries",
     "changed_light_entry",
     "lens_entry",
     "light_entry",
@@ -122,15 +123,20 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
     """
     entry = _camera_entry(spec.name, spec, {"rate": spec.rate_hz, "following": spec.following})
     if spec.cameras is not None:
-        entry["cameras"] = [
-            {**_camera_entry(name, camera, {}), **pose_entry(camera.extrinsics)}
-            for name, camera in spec.cameras.items()
-        ]
+        entry["cameras"] = camera_entries(spec.cameras)
     if spec.mover:
         entry["mover"] = spec.mover
     if spec.look_at is not None:
         entry["keep_looking_at"] = look_at_entry(spec.look_at)
     return entry if pose is None else {**entry, **pose_entry(pose)}
+
+
+def camera_entries(cameras: Mapping[str, RigCamera]) -> list[dict[str, Any]]:
+    """Return the keys of a rig's cameras."""
+    return [
+        {**_camera_entry(name, camera, {}), **pose_entry(camera.extrinsics)}
+        for name, camera in cameras.items()
+    ]
 
 
 def _camera_entry(

@@ -13,8 +13,10 @@ from hypothesis import strategies as st
 
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import SailenvError, SceneError, UnknownName
-from sailenv_ros.scene.calibration_files import load_calibration
+from sailenv_ros.scene.calibration_files import load_calibration, load_rig
 from sailenv_ros.scene.loader import load_scene
+from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.geometry import Pose
 
 CAMERA_INFO = """\
 image_width: 640
@@ -66,6 +68,21 @@ cam3:
   distortion_model: radtan
   intrinsics: [458.6, 457.3, 367.2, 248.4]
   resolution: [752, 480]
+"""
+
+BESIDE = """\
+  T_cn_cnm1:
+  - [0.99999, 0.0, 0.0044721, -0.11]
+  - [0.0, 1.0, 0.0, 0.0]
+  - [-0.0044721, 0.0, 0.99999, 0.0002]
+  - [0.0, 0.0, 0.0, 1.0]
+"""
+BEHIND = """\
+  T_cn_cnm1:
+  - [-1.0, 0.0, 0.0, 0.0]
+  - [0.0, 1.0, 0.0, 0.02]
+  - [0.0, 0.0, -1.0, -0.3]
+  - [0.0, 0.0, 0.0, 1.0]
 """
 
 COLMAP = """\
@@ -124,6 +141,85 @@ def test_each_camera_of_kalibr_is_read(
     lens = load_calibration(_written(tmp_path, "camchain.yaml", CAMCHAIN), camera=camera)
     assert (lens.distortion_model, lens.distortion) == (model, coefficients)
     np.testing.assert_allclose((lens.fx, lens.fy, lens.cx, lens.cy), matrix)
+
+
+def _chain(tmp_path: Path) -> Path:
+    first, second, third = (CAMCHAIN.index(f"cam{number}") for number in (1, 2, 3))
+    text = CAMCHAIN[:second] + BESIDE + CAMCHAIN[second:third] + BEHIND
+    assert first < second
+    return _written(tmp_path, "camchain.yaml", text)
+
+
+def test_a_chain_of_kalibr_is_a_rig(tmp_path: Path) -> None:
+    """A place in the room has the pixels that the chain's own arithmetic says, in each camera."""
+    rig = load_rig(_chain(tmp_path), max_angle_deg=80.0, far_m=30.0)
+    assert list(rig) == ["cam0", "cam1", "cam2"]
+    assert rig["cam0"].extrinsics == Pose()
+    body = Pose.from_rpy_deg((1.0, -2.0, 1.5), (3.0, -20.0, 70.0))
+    cameras = [
+        Camera(intrinsics=camera.intrinsics, pose=body.carried(camera.extrinsics))
+        for camera in rig.values()
+    ]
+    in_first = np.array([0.4, -0.3, 2.0, 1.0])
+    place = cameras[0].world_from_camera @ in_first
+    turn = 0.0044721
+    beside = np.array(
+        [
+            [np.cos(turn), 0.0, np.sin(turn), -0.11],
+            [0.0, 1.0, 0.0, 0.0],
+            [-np.sin(turn), 0.0, np.cos(turn), 0.0002],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+    behind = np.diag([-1.0, 1.0, -1.0, 1.0])
+    behind[:3, 3] = 0.0, 0.02, -0.3
+    for camera, expected in zip(
+        cameras, (in_first, beside @ in_first, behind @ beside @ in_first), strict=True
+    ):
+        seen = np.linalg.inv(camera.world_from_camera) @ place
+        np.testing.assert_allclose(seen, expected, atol=2e-5)
+    for camera in rig.values():
+        assert (camera.intrinsics.max_angle_deg, camera.intrinsics.far_m) == (80.0, 30.0)
+
+
+def test_the_command_prints_a_rig_for_scene_files(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As keys of an agent, which a scene reads as the same rig."""
+    chain = _chain(tmp_path)
+    assert main(["scene", "lens", str(chain), "--rig"]) == 0
+    keys = "".join(f"    {line}\n" for line in capsys.readouterr().out.splitlines())
+    scene = _written(
+        tmp_path, "room.yaml", f"version: 1\nname: room\nagents:\n  - name: eye\n{keys}"
+    )
+    (agent,) = load_scene(scene).agents
+    cameras = agent.to_agent_spec().cameras
+    assert cameras is not None
+    for name, camera in load_rig(chain).items():
+        assert cameras[name].intrinsics == camera.intrinsics
+        read, told = cameras[name].extrinsics.matrix(), camera.extrinsics.matrix()
+        np.testing.assert_allclose(read, told, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("T_cn_cnm1", "T_other", "cam1.T_cn_cnm1.0: is missing"),
+        ("[0.0, 1.0, 0.0, 0.0]", "[0.0, 1.0, 0.0]", "cam1.T_cn_cnm1.1: must be four numbers, got"),
+        ("[0.0, 1.0, 0.0, 0.0]", "[0.0, -1.0, 0.0, 0.0]", "cam1.T_cn_cnm1: must be four rows of a"),
+        ("[0.0, 1.0, 0.0, 0.0]", "[0.0, 1.1, 0.0, 0.0]", "cam1.T_cn_cnm1: must be four rows of a"),
+        ("cam1:", "Cam 1:", "makes no rig: name of the camera must be"),
+    ],
+)
+def test_what_is_no_rig_is_refused_at_its_place(
+    tmp_path: Path, old: str, new: str, sentence: str
+) -> None:
+    """In one sentence, with line and column."""
+    path = _chain(tmp_path)
+    path.write_text(path.read_text().replace(old, new))
+    with pytest.raises(SceneError, match=r"camchain\.yaml:\d+:\d+: ") as caught:
+        load_rig(path)
+    assert sentence in str(caught.value)
 
 
 COLMAP_LENSES: list[tuple[int, str, tuple[float, ...], float]] = [
