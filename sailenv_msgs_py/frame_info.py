@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from array import array
 from collections.abc import Iterable
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 from std_msgs.msg import Header
 
 from sailenv_msgs.msg import FrameInfo
+from sailenv_msgs.msg import RowPoses as RowPosesMsg
 from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_msgs_py.transforms import optical_pose_to_msg, pose_from_msg
 from sailenv_ros.errors import InvalidRequest
@@ -19,6 +21,7 @@ from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import QUAT_BODY_FROM_OPTICAL
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.lessons import LessonState
+from sailenv_ros.types.row_poses import RowPoses
 
 __all__ = [
     "WORLD_FRAME_ID",
@@ -28,6 +31,7 @@ __all__ = [
     "lesson_of_frame_info",
     "optical_frame_id",
     "randomised_of_frame_info",
+    "row_poses_of_frame_info",
     "states_of_frame_info",
 ]
 
@@ -72,6 +76,7 @@ def frame_info_to_msg(
         exposure=float(frame.exposure),
         lesson="" if frame.lesson is None else frame.lesson.to_json(),
         **_states_fields(frame.states),
+        row_poses=[] if frame.row_poses is None else [_row_poses_to_msg(frame.row_poses)],
     )
 
 
@@ -141,6 +146,47 @@ def states_of_frame_info(msg: FrameInfo) -> InstanceStates | None:
         angular_velocities=rows[:, 10:13],
         scales=rows[:, 13:],
         histories=np.asarray(msg.instance_histories, np.int64),
+    )
+
+
+def row_poses_of_frame_info(msg: FrameInfo) -> RowPoses | None:
+    """Read the poses by rows of a rolling shutter; None if all rows saw one instant.
+
+    Raises
+    ------
+    InvalidRequest
+        If the arrays do not fit each other or hold what no pose can be.
+    """
+    if not msg.row_poses:
+        return None
+    told = msg.row_poses[0]
+    times_ns = np.array(told.times_ns, np.int64)
+    ids = np.array(told.instance_ids, np.uint16)
+    numbers = np.asarray(told.poses, np.float64)
+    shape = (len(times_ns), 1 + len(ids), 3, 4)
+    if not len(times_ns) or numbers.size != math.prod(shape):
+        accepted = f"12 for each of {shape[1]} poses of each of {shape[0]} rows"
+        raise InvalidRequest("row_poses", f"{numbers.size} numbers", accepted)
+    if not np.isfinite(numbers).all():
+        raise InvalidRequest("row_poses", "a number that is not finite", "finite numbers")
+    matrices = np.zeros((*shape[:2], 4, 4))
+    matrices[:, :, :3] = numbers.reshape(shape)
+    matrices[:, :, 3, 3] = 1.0
+    return RowPoses(
+        times_ns=times_ns,
+        world_from_camera=matrices[:, 0].copy(),
+        ids=ids,
+        world_from_instance=matrices[:, 1:].copy(),
+    )
+
+
+def _row_poses_to_msg(rows: RowPoses) -> RowPosesMsg:
+    """Make the message; arrays of Python are taken without a look at each number."""
+    poses = np.concatenate([rows.world_from_camera[:, None], rows.world_from_instance], axis=1)
+    return RowPosesMsg(
+        times_ns=array("q", rows.times_ns.tobytes()),
+        poses=array("d", np.ascontiguousarray(poses[:, :, :3]).tobytes()),
+        instance_ids=array("H", rows.ids.tobytes()),
     )
 
 

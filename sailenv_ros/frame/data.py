@@ -76,7 +76,7 @@ class FrameData(RebuiltByFields, Mapping[str, NDArray[Any]]):
         Draws each object of the frame alone, as `amodal` gives it; None if nothing can.
     row_poses : RowPoses or None
         Poses by rows where a shutter rolled and something moved; None if all rows saw one instant,
-        or they are not known (messages do not have them).
+        or they are not known (files of data sets do not have them).
     exposure : float
         Stops that the picture was brightened by, besides the scene's.
     """

@@ -20,6 +20,7 @@ from sailenv_msgs_py.frame_info import (
     camera_of_frame_info,
     lesson_of_frame_info,
     randomised_of_frame_info,
+    row_poses_of_frame_info,
     states_of_frame_info,
 )
 from sailenv_msgs_py.images import view_from_image
@@ -90,6 +91,7 @@ def frame_of_info(
         randomised=randomised_of_frame_info(info),
         lesson=lesson_of_frame_info(info),
         exposure=info.exposure,
+        row_poses=row_poses_of_frame_info(info),
     )
 
 

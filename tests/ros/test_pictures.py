@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import sailenv_msgs.msg as msgs
@@ -119,6 +120,24 @@ def test_a_frame_belongs_to_the_middle_of_its_shutter(agent: Agent) -> None:
     after = agent.get_frame(VIEWS)
     later_ns = after["stamp_ns"] - before["stamp_ns"]
     assert abs(later_ns - (8 * 1e9 / 240 - 0.5 * (71 * 1e5 + 5e6))) <= 2.0
+
+
+def test_poses_of_rows_and_the_exposure_arrive(agent: Agent) -> None:
+    """Rows 0.1 ms apart about the frame's own; the told stops by hand give the same picture."""
+    agent.set_picture(row_time_us=100.0, auto_exposure_s=0.5)
+    agent.step(8)
+    frame = agent.get_frame(VIEWS)
+    rows = frame["row_poses"]
+    assert np.diff(rows.times_ns).tolist() == [100_000] * 71
+    assert abs(rows.times_ns[35:37].mean() - frame["stamp_ns"]) <= 1.0
+    middle = rows.world_from_camera[35:37].mean(axis=0)
+    np.testing.assert_allclose(middle, frame["world_from_camera"], atol=1e-7)
+    assert (rows.world_from_camera[0] != rows.world_from_camera[71]).any()
+    agent.set_picture(auto_exposure_s=0.0, exposure=frame["exposure"])
+    by_hand = agent.get_frame(VIEWS)
+    assert by_hand["stamp_ns"] == frame["stamp_ns"]
+    assert by_hand["main"].tobytes() == frame["main"].tobytes()
+    assert by_hand["exposure"] == frame["exposure"] != 0.0
 
 
 def test_streamed_frames_show_it(agent: Agent) -> None:

@@ -49,7 +49,8 @@ def frame_dict(frame: FrameData, *, copy: bool) -> dict[str, Any]:
         ``stamp_ns``, ``sequence``, ``scene``, ``render_s`` (wall time that rendering took),
         ``K`` (3, 3), the optical frame's ``world_from_camera`` (4, 4), and what
         `sailenv_ros.frame.motion` needs: ``camera``, ``states``, ``epoch``. ``lesson`` is the
-        `LessonState`, None if the scene has no lessons.
+        `LessonState`, None if the scene has no lessons. ``exposure`` has the picture's stops,
+        ``row_poses`` a rolling shutter's `RowPoses` or None.
     """
     entries: dict[str, Any] = {}
     sizes: dict[str, int] = {}
@@ -79,6 +80,8 @@ def frame_dict(frame: FrameData, *, copy: bool) -> dict[str, Any]:
         states=frame.states,
         epoch=frame.epoch,
         lesson=frame.lesson,
+        exposure=frame.exposure,
+        row_poses=frame.row_poses,
     )
     return entries
 

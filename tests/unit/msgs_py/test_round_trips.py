@@ -27,6 +27,7 @@ from sailenv_msgs_py.frame_info import (
     header_of_frame,
     lesson_of_frame_info,
     randomised_of_frame_info,
+    row_poses_of_frame_info,
     states_of_frame_info,
 )
 from sailenv_msgs_py.object_msgs import (
@@ -61,6 +62,7 @@ from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.objects import ObjectState
 from sailenv_ros.types.picture_settings import LIMITS, PictureSettings
 from sailenv_ros.types.rigid_body import RIGID_BODY_LIMITS, RigidBody
+from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.scene_info import MoverInfo, SceneInfo
 from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS
 from tests.support.small_frame import small_frame
@@ -306,6 +308,22 @@ def frames(draw: st.DrawFn) -> Frame:
         randomised=draw(st.none() | st.dictionaries(TEXTS, COORDINATES, max_size=2)),
         lesson=draw(st.none() | lesson_states()),
         exposure=draw(st.floats(-16.0, 16.0)),
+        row_poses=draw(st.none() | row_poses()),
+    )
+
+
+@st.composite
+def row_poses(draw: st.DrawFn) -> RowPoses:
+    """Return poses of one to three rows, of up to two instances."""
+    rows = draw(st.integers(1, 3))
+    ids = sorted(draw(st.sets(st.integers(1, 65535), max_size=2)))
+    poses = [[draw(POSES).matrix() for _ in range(1 + len(ids))] for _ in range(rows)]
+    matrices = np.array(poses)
+    return RowPoses(
+        times_ns=np.array([draw(TIMES_NS) for _ in range(rows)], np.int64),
+        world_from_camera=matrices[:, 0].copy(),
+        ids=np.array(ids, np.uint16),
+        world_from_instance=matrices[:, 1:].copy(),
     )
 
 
@@ -523,7 +541,9 @@ def test_scenes(info: SceneInfo) -> None:
             assert one == other, field.name
 
 
-def same_states(read: InstanceStates | None, written: InstanceStates | None) -> None:
+def same_arrays(
+    read: InstanceStates | RowPoses | None, written: InstanceStates | RowPoses | None
+) -> None:
     """Every array has the same bytes."""
     assert (read is None) == (written is None)
     for name in () if read is None else [entry.name for entry in dataclasses.fields(read)]:
@@ -546,6 +566,28 @@ def test_states_that_do_not_fit_are_refused(field: str) -> None:
         states_of_frame_info(msg)
 
 
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("times_ns", []),
+        ("times_ns", [1, 2, 3]),
+        ("instance_ids", [4]),
+        ("poses", [0.0] * 23),
+        ("poses", [float("nan")] * 24),
+    ],
+)
+def test_poses_of_rows_that_do_not_fit_are_refused(field: str, value: list[float]) -> None:
+    """Two rows of a camera alone have 24 numbers, all finite."""
+    told = msgs.RowPoses(times_ns=[1, 2], poses=[*np.eye(3, 4).ravel()] * 2)
+    msg = msgs.FrameInfo(row_poses=[told])
+    rows = row_poses_of_frame_info(msg)
+    assert rows is not None
+    np.testing.assert_array_equal(rows.world_from_camera, [np.eye(4)] * 2)
+    setattr(told, field, value)
+    with pytest.raises(InvalidRequest, match="row_poses"):
+        row_poses_of_frame_info(msg)
+
+
 def frame_info_of(frame: Frame) -> msgs.FrameInfo:
     views = tuple(VIEWS)[: 1 + frame.sequence % len(VIEWS)]
     return frame_info_to_msg(
@@ -561,12 +603,13 @@ def test_frame_infos(frame: Frame, views: tuple[str, ...], depth_range_m: float)
     told = {name: getattr(msg, name) for name in msg.get_fields_and_field_types()}
     told.pop("camera_pose")
     assert ns_from_stamp(told.pop("header").stamp) == frame.stamp_ns
-    same_states(states_of_frame_info(msg), frame.states)
+    same_arrays(states_of_frame_info(msg), frame.states)
+    same_arrays(row_poses_of_frame_info(msg), frame.row_poses)
     assert randomised_of_frame_info(msg) == frame.randomised
     told.pop("randomised")
     assert lesson_of_frame_info(msg) == frame.lesson
     told.pop("lesson")
-    for name in [name for name in told if name.startswith(("instance_", "has_"))]:
+    for name in [name for name in told if name.startswith(("instance_", "has_", "row_poses"))]:
         told.pop(name)
     assert told == {
         "agent": frame.agent,

@@ -299,11 +299,12 @@ class _WithoutStates:
     def write(self, topic: str, parts: Any, log_ns: int) -> None:
         if topic.endswith("frame_info"):
             # A false, three bytes that fill up, three empty arrays, two empty texts with three
-            # bytes between them, bytes up to a multiple of eight, and a number of eight bytes.
+            # bytes between them, bytes up to a multiple of eight, a number of eight bytes, and
+            # an empty array.
             (data,) = parts
             header, empty_text = 4, 5
             end = len(bytes(data).rstrip(b"\0")) + empty_text - 1
-            assert len(data) == header + -(-(end - header) // 8) * 8 + 8
+            assert len(data) == header + -(-(end - header) // 8) * 8 + 8 + 4
             data = data[:end]
             assert data[-29] == 0
             assert not any(data[-25:-13])

@@ -155,7 +155,7 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
 def test_a_full_disk_ends_the_recording_readably(tmp_path: Path) -> None:
     """The writer says that the disk is full, counts what it lost, and leaves a readable bag."""
     frames = 0
-    with file_size_limit(100_000):
+    with file_size_limit(130_000):
         writer = RecordingWriter(
             tmp_path / "bag", RecordingOptions(compression="none", chunk_bytes=10_000)
         )
