@@ -178,8 +178,8 @@ def test_a_chain_of_kalibr_is_a_rig(tmp_path: Path) -> None:
     ):
         seen = np.linalg.inv(camera.world_from_camera) @ place
         np.testing.assert_allclose(seen, expected, atol=2e-5)
-    for camera in rig.values():
-        assert (camera.intrinsics.max_angle_deg, camera.intrinsics.far_m) == (80.0, 30.0)
+    for one in rig.values():
+        assert (one.intrinsics.max_angle_deg, one.intrinsics.far_m) == (80.0, 30.0)
 
 
 def test_the_command_prints_a_rig_for_scene_files(
