@@ -26,6 +26,8 @@ import numpy as np
 SIDE_M, SQUARES, WIDE_SQUARES = 1.04, 12, 8
 WIDE = "equidistant", "mei"
 LEAST_CORNERS = 8
+WRONG_POSE = 10.0
+"""As often the median residual, or more, has a view whose pose is the wrong one of two."""
 
 Array: TypeAlias = Any
 Found: TypeAlias = list[tuple[Array, Array]]
@@ -142,13 +144,29 @@ def fisheye_law(matrix: Array, law: Array, rays: Array) -> Array:
 
 
 def omnidir(found: Found, size: tuple[int, int]) -> Calibrated:
-    """Calibrate by `cv2.omnidir.calibrate`."""
+    """Calibrate by `cv2.omnidir.calibrate`, twice.
+
+    A flat board has two poses of nearly the same picture, and this calibrator's first guess can be
+    the wrong one, which it never leaves. Such views are left out of the second run, and told.
+    """
     objects = [points.reshape(1, -1, 3) for points, _ in found]
     images = [pixels.reshape(1, -1, 2) for _, pixels in found]
-    rms, matrix, xi, law, _, _, _ = CV.omnidir.calibrate(
-        objects, images, size, None, None, None, CV.omnidir.CALIB_FIX_SKEW, ACCURATE
-    )
-    mirror, still = float(np.ravel(xi)[0]), np.zeros(3)
+    for last in (False, True):
+        rms, matrix, xi, law, turns, shifts, used = CV.omnidir.calibrate(
+            objects, images, size, None, None, None, CV.omnidir.CALIB_FIX_SKEW, ACCURATE
+        )
+        mirror, still = float(np.ravel(xi)[0]), np.zeros(3)
+        if last:
+            break
+        views = np.ravel(used)
+        residuals = [
+            _residual(objects[view], images[view], turn, shift, (matrix, mirror, law))
+            for view, turn, shift in zip(views, turns, shifts, strict=True)
+        ]
+        kept = views[residuals < WRONG_POSE * np.median(residuals)]
+        if len(kept) < len(found):
+            print(f"cv2.omnidir: {len(found) - len(kept)} views left out", file=sys.stderr)
+        objects, images = [objects[view] for view in kept], [images[view] for view in kept]
 
     def project(rays: Array) -> Array:
         places, _ = CV.omnidir.projectPoints(
@@ -157,6 +175,15 @@ def omnidir(found: Found, size: tuple[int, int]) -> Calibrated:
         return places.reshape(-1, 2)
 
     return rms, matrix, project
+
+
+def _residual(
+    points: Array, pixels: Array, turn: Array, shift: Array, lens: tuple[Array, float, Array]
+) -> float:
+    """Return the root of the mean squared distance of a view's corners [px]."""
+    matrix, mirror, law = lens
+    places, _ = CV.omnidir.projectPoints(points, turn, shift, matrix, mirror, law)
+    return float(np.sqrt(((places.reshape(-1, 2) - pixels.reshape(-1, 2)) ** 2).sum(1).mean()))
 
 
 def colmap(name: str, found: Found, size: tuple[int, int]) -> Calibrated:
