@@ -7,6 +7,7 @@ COLMAP's `cameras.txt`. They are data: nothing in them is run.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
 from sailenv_ros.types.rigs import RigCamera, checked_cameras
 
-__all__ = ["load_calibration", "load_rig"]
+__all__ = ["COLMAP_CORNER_PX", "colmap_camera", "load_calibration", "load_rig"]
 
 _MATRIX_NUMBERS = 9
 _PLUMB_BOB = "plumb_bob"
@@ -56,7 +57,7 @@ _COLMAP_MODELS: Mapping[str, tuple[str, str]] = {
 }
 """Our model of each of COLMAP's, and its parameters in order."""
 
-_COLMAP_CORNER_PX = 0.5
+COLMAP_CORNER_PX = 0.5
 """COLMAP's (0, 0) is the corner of the picture, ours the centre of the first pixel."""
 
 
@@ -274,11 +275,41 @@ def _of_colmap(
     matrix = {
         "fx": focal["fx"],
         "fy": focal["fy"],
-        "cx": told["cx"] - _COLMAP_CORNER_PX,
-        "cy": told["cy"] - _COLMAP_CORNER_PX,
+        "cx": told["cx"] - COLMAP_CORNER_PX,
+        "cy": told["cy"] - COLMAP_CORNER_PX,
     }
     coefficients = parameters[names.index("cy") + 1 :]
     if model == _PLUMB_BOB:
         coefficients += [0.0] * (4 - len(coefficients))
     lens = {**others, "distortion_model": model, "distortion": tuple(coefficients)}
     return file.lens(mark(1), (int(width), int(height)), matrix, lens)
+
+
+def colmap_camera(lens: CameraIntrinsics) -> tuple[str, tuple[float, ...]]:
+    """Return COLMAP's name of a lens's model, and its parameters in COLMAP's order.
+
+    Raises
+    ------
+    InvalidRequest
+        If COLMAP has no such model.
+    """
+    given = tuple(lens.distortion)
+    # A model that has all of the lens's coefficients; what it has besides is 0.
+    for name, (model, order) in _COLMAP_MODELS.items():
+        names = order.split()
+        room = len(names) - names.index("cy") - 1
+        if "fx" in names and model == lens.distortion_model and not any(given[room:]):
+            own = (*given, *(0.0,) * room)[:room]
+            corner = COLMAP_CORNER_PX
+            return name, (lens.fx, lens.fy, lens.cx + corner, lens.cy + corner, *own)
+    if lens.distortion_model == _PLUMB_BOB:  # with k3, which stands elsewhere
+        k1, k2, p1, p2, k3 = given
+        made = replace(
+            lens,
+            distortion_model="rational_polynomial",
+            distortion=(k1, k2, p1, p2, k3, 0.0, 0.0, 0.0),
+        )
+        return colmap_camera(made)
+    models = sorted({model for model, _ in _COLMAP_MODELS.values()})
+    accepted = f"one of {', '.join(models)} without thin prism, the models that COLMAP has"
+    raise InvalidRequest("distortion_model", lens.distortion_model, accepted)

@@ -31,6 +31,8 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         "parquet": "parquet.ParquetExport",
         "lerobot": "lerobot.LeRobotExport",
         "mcap": "mcap.McapExport",
+        "colmap": "colmap.ColmapExport",
+        "nerfstudio": "nerfstudio.NerfstudioExport",
     }
 )
 """Module in this folder and class of each format, by its name."""

@@ -1,0 +1,121 @@
+"""COLMAP reads our models, and finds the same room with our poses and its own features.
+
+    python benchmarks/judge_reconstruction.py write FOLDER
+    python benchmarks/judge_reconstruction.py judge FOLDER
+
+`write` exports forty pictures of `room_01` from an ellipse within it, by each of three lenses. Then
+`judge`, in an environment with pycolmap and without this project, prints for each: points, mean
+length of their tracks, the greatest distance between an observation and COLMAP's projection of its
+point [px]; and for points that COLMAP triangulates of SIFT features with our poses and lens: how
+many, their mean reprojection error [px], the median distance to the nearest of our points [mm].
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+PICTURES = 40
+VIEWS = "rgb", "depth", "instance", "range"
+LENSES: dict[str, dict[str, Any]] = {
+    "pinhole": {},
+    "plumb_bob": {
+        "distortion_model": "plumb_bob",
+        "distortion": (-0.2, 0.05, 0.001, -0.001, 0.01),
+        "fx_px": 450.0,
+        "fy_px": 451.0,
+    },
+    "equidistant": {
+        "distortion_model": "equidistant",
+        "distortion": (0.01, -0.003, 0.001, 0.0),
+        "fx_px": 250.0,
+        "fy_px": 251.0,
+        "max_angle_deg": 80.0,
+    },
+}
+
+
+def write(folder: Path) -> None:
+    """Export pictures by each lens."""
+    from sailenv_ros import AgentSpec, CameraIntrinsics, Simulation, look_at
+    from sailenv_ros.dataset.formats import DatasetWriter
+
+    for name, law in LENSES.items():
+        lens = CameraIntrinsics(width=640, height=480, **law)
+        spec = AgentSpec(name="eye", intrinsics=lens, views=VIEWS, following=False)
+        with (
+            Simulation("room_01", mode="lockstep", agent=spec) as simulation,
+            DatasetWriter(folder / name, ["colmap"]) as writer,
+        ):
+            for turn in np.linspace(0.0, 2.0 * np.pi, PICTURES, endpoint=False):
+                c, s = float(np.cos(turn)), float(np.sin(turn))
+                simulation.set_pose(look_at((1.3 * c, 1.1 * s, 1.5), (-0.6 * c, -0.6 * s, 0.8)))
+                simulation.step(8)
+                writer.add(simulation.capture())
+            writer.finish()
+
+
+def judge(folder: Path) -> None:
+    """Print a row for each model."""
+    import pycolmap
+
+    pycolmap.logging.minloglevel = 3
+    print("|lens|points|track|off [px]|triangulated|their error [px]|to ours [mm]|")
+    print(7 * "|---" + "|")
+    for own in sorted(path for path in folder.iterdir() if (path / "sparse").is_dir()):
+        model = pycolmap.Reconstruction(own / "sparse" / "0")
+        off = max(_off(model, image) for image in model.images.values())
+        found = _triangulated(pycolmap, own, model)
+        ours = np.array([point.xyz for point in model.points3D.values()])
+        theirs = np.array([point.xyz for point in found.points3D.values()])
+        near = [1e3 * np.sqrt(((ours - place) ** 2).sum(axis=1).min()) for place in theirs]
+        print(
+            f"|{own.name}|{len(ours)}|{model.compute_mean_track_length():.1f}|{off:.1e}"
+            f"|{len(theirs)}|{found.compute_mean_reprojection_error():.2f}|{np.median(near):.0f}|"
+        )
+
+
+def _off(model: Any, image: Any) -> float:
+    """Return how far an image's observations are from where COLMAP projects their points [px]."""
+    seen = [point for point in image.points2D if point.has_point3D()]
+    pose = image.cam_from_world()
+    places = np.array([model.points3D[point.point3D_id].xyz for point in seen])
+    local = places @ pose.rotation.matrix().T + pose.translation
+    camera = model.cameras[image.camera_id]
+    pixels = np.array([camera.img_from_cam(point) for point in local])
+    told = np.array([point.xy for point in seen])
+    return float(np.linalg.norm(pixels - told, axis=1).max())
+
+
+def _triangulated(pycolmap: Any, folder: Path, model: Any) -> Any:
+    """Return the points that COLMAP finds with our poses; its data base numbers the pictures."""
+    base, bare, found = folder / "features.db", folder / "bare", folder / "triangulated"
+    base.unlink(missing_ok=True)
+    (camera,) = model.cameras.values()
+    options = pycolmap.ImageReaderOptions()
+    options.camera_model = camera.model.name
+    options.camera_params = camera.params_to_string()
+    mode = pycolmap.CameraMode.SINGLE
+    pycolmap.extract_features(base, folder / "images", camera_mode=mode, reader_options=options)
+    pycolmap.match_sequential(base)
+    with sqlite3.connect(base) as connection:
+        number = dict(connection.execute("select name, image_id from images").fetchall())
+    bare.mkdir(exist_ok=True)
+    found.mkdir(exist_ok=True)
+    text = (folder / "sparse" / "0" / "images.txt").read_text().splitlines()[::2]
+    poses = [line.split() for line in text]
+    lines = [" ".join([str(number[words[-1]]), *words[1:]]) + "\n\n" for words in poses]
+    (bare / "images.txt").write_text("".join(lines))
+    (bare / "points3D.txt").write_text("")
+    (bare / "cameras.txt").write_bytes((folder / "sparse" / "0" / "cameras.txt").read_bytes())
+    return pycolmap.triangulate_points(
+        pycolmap.Reconstruction(bare), base, folder / "images", found, clear_points=True
+    )
+
+
+if __name__ == "__main__":
+    {"write": write, "judge": judge}[sys.argv[1]](Path(sys.argv[2]))
