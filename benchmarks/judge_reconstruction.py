@@ -2,12 +2,15 @@
 
     python benchmarks/judge_reconstruction.py write FOLDER
     python benchmarks/judge_reconstruction.py judge FOLDER
+    python benchmarks/judge_reconstruction.py rays FOLDER
 
 `write` exports forty pictures of `room_01` from an ellipse within it, by each of three lenses. Then
 `judge`, in an environment with pycolmap and without this project, prints for each: points, mean
 length of their tracks, the greatest distance between an observation and COLMAP's projection of its
 point [px]; and for points that COLMAP triangulates of SIFT features with our poses and lens: how
 many, their mean reprojection error [px], the median distance to the nearest of our points [mm].
+`rays`, where nerfstudio is, reads the same by its data parser and prints by how much, at most, its
+rays miss the points that they should meet [px].
 """
 
 from __future__ import annotations
@@ -49,7 +52,7 @@ def write(folder: Path) -> None:
         spec = AgentSpec(name="eye", intrinsics=lens, views=VIEWS, following=False)
         with (
             Simulation("room_01", mode="lockstep", agent=spec) as simulation,
-            DatasetWriter(folder / name, ["colmap"]) as writer,
+            DatasetWriter(folder / name, ["colmap", "nerfstudio"]) as writer,
         ):
             for turn in np.linspace(0.0, 2.0 * np.pi, PICTURES, endpoint=False):
                 c, s = float(np.cos(turn)), float(np.sin(turn))
@@ -66,7 +69,7 @@ def judge(folder: Path) -> None:
     pycolmap.logging.minloglevel = 3
     print("|lens|points|track|off [px]|triangulated|their error [px]|to ours [mm]|")
     print(7 * "|---" + "|")
-    for own in sorted(path for path in folder.iterdir() if (path / "sparse").is_dir()):
+    for own in sorted(path.parent for path in folder.glob("*/colmap/sparse")):
         model = pycolmap.Reconstruction(own / "sparse" / "0")
         off = max(_off(model, image) for image in model.images.values())
         found = _triangulated(pycolmap, own, model)
@@ -74,7 +77,7 @@ def judge(folder: Path) -> None:
         theirs = np.array([point.xyz for point in found.points3D.values()])
         near = [1e3 * np.sqrt(((ours - place) ** 2).sum(axis=1).min()) for place in theirs]
         print(
-            f"|{own.name}|{len(ours)}|{model.compute_mean_track_length():.1f}|{off:.1e}"
+            f"|{own.parent.name}|{len(ours)}|{model.compute_mean_track_length():.1f}|{off:.1e}"
             f"|{len(theirs)}|{found.compute_mean_reprojection_error():.2f}|{np.median(near):.0f}|"
         )
 
@@ -117,5 +120,42 @@ def _triangulated(pycolmap: Any, folder: Path, model: Any) -> Any:
     )
 
 
+def rays(folder: Path) -> None:
+    """Print a row for each model, of every eighth picture."""
+    import torch
+    from nerfstudio.data.dataparsers.nerfstudio_dataparser import NerfstudioDataParserConfig
+
+    print("|lens|pictures|rays miss by [px]|\n|---|---|---|")
+    for own in sorted(path.parent for path in folder.glob("*/nerfstudio")):
+        parser = NerfstudioDataParserConfig(
+            data=own / "nerfstudio",
+            orientation_method="none",
+            center_method="none",
+            auto_scale_poses=False,
+            eval_mode="all",
+            load_3D_points=False,
+        ).setup()
+        cameras = parser.get_dataparser_outputs("train").cameras
+        model = own / "colmap" / "sparse" / "0"
+        words = [line.split() for line in (model / "points3D.txt").read_text().splitlines()]
+        places = {int(point[0]): [float(word) for word in point[1:4]] for point in words}
+        seen = (model / "images.txt").read_text().splitlines()[1::2]
+        worst = 0.0
+        for number in range(0, len(seen), 8):
+            observed = np.array(seen[number].split(), np.float64).reshape(-1, 3)
+            made = cameras.generate_rays(
+                camera_indices=torch.full((len(observed), 1), number),
+                coords=torch.tensor(observed[:, [1, 0]], dtype=torch.float32),
+            )
+            there = np.array([places[int(point)] for point in observed[:, 2]])
+            meant = there - made.origins.numpy()
+            meant /= np.linalg.norm(meant, axis=1, keepdims=True)
+            looks = made.directions.numpy().astype(np.float64)
+            looks /= np.linalg.norm(looks, axis=1, keepdims=True)
+            off = np.linalg.norm(np.cross(looks, meant), axis=1) * float(cameras.fx[0])
+            worst = max(worst, float(off.max()))
+        print(f"|{own.name}|{len(seen)}|{worst:.1e}|")
+
+
 if __name__ == "__main__":
-    {"write": write, "judge": judge}[sys.argv[1]](Path(sys.argv[2]))
+    {"write": write, "judge": judge, "rays": rays}[sys.argv[1]](Path(sys.argv[2]))
