@@ -1,8 +1,8 @@
 """The rays of lenses that bend straight lines, computed once: directions of pixels' centres.
 
-A lens comes in; unit rays go out, and what ground truth makes of them. Through a pin-hole points
-are told by their depth, through other lenses by their distance along the ray, for these may see to
-the side and behind.
+A lens comes in; unit rays go out, and what ground truth makes of them. Through a pin-hole, and
+where rays are parallel, points are told by their depth; through other lenses by their distance
+along the ray, for these may see to the side and behind.
 """
 
 from __future__ import annotations
@@ -23,8 +23,11 @@ __all__ = [
     "depth_shares",
     "ranges_of_depths",
     "rays_of_half_pixels",
+    "reach_lines",
     "reach_of",
+    "reach_of_points",
     "reach_view",
+    "tells_depth",
     "unit_rays",
 ]
 
@@ -38,9 +41,41 @@ _LEAST_SURE = 1e-7
 _NO_COEFFICIENTS = np.zeros(MOST_COEFFICIENTS)
 
 
+def tells_depth(lens: CameraIntrinsics) -> bool:
+    """Return whether depths along the axis tell where on their rays points are."""
+    return lens.is_pinhole or lens.is_parallel
+
+
 def reach_view(lens: CameraIntrinsics) -> str:
     """Return the view that tells where on its ray a point is: ``depth`` or ``range``."""
-    return "depth" if lens.is_pinhole else "range"
+    return "depth" if tells_depth(lens) else "range"
+
+
+def reach_of_points(points: NDArray[np.float64], lens: CameraIntrinsics) -> NDArray[np.float64]:
+    """Return what `reach_view` would tell of points (..., 3) of the optical frame [m]."""
+    return points[..., 2] if tells_depth(lens) else np.linalg.norm(points, axis=-1)
+
+
+def reach_lines(
+    lens: CameraIntrinsics, pixels: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return where rays begin and lead to: after t of the latter `reach_view` tells t.
+
+    Parameters
+    ----------
+    lens : CameraIntrinsics
+    pixels : (..., 2) float64
+        Columns and rows [px].
+
+    Returns
+    -------
+    origins, directions : (..., 3) float64
+        In the optical frame [m]; nan where the lens sees nothing.
+    """
+    if tells_depth(lens):
+        return lens.sight_lines(pixels)
+    directions = lens.unit_rays_through(pixels)
+    return np.zeros_like(directions), directions
 
 
 @lru_cache(maxsize=8)
@@ -125,7 +160,8 @@ def bent_lenses(begin: CameraIntrinsics, end: CameraIntrinsics) -> BentLenses | 
         return None
     straight = end.is_pinhole
     return BentLenses(
-        from_rays=None if begin.is_pinhole else unit_rays(begin),
+        from_rays=None if tells_depth(begin) else unit_rays(begin),
+        from_parallel=begin.is_parallel,
         to_model=-1 if straight else end.law.model.number,
         to_coefficients=_NO_COEFFICIENTS if straight else end.law.padded,
         to_limit_rad=0.0 if straight else end.law.limit_rad,

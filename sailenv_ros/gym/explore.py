@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
 from typing_extensions import Unpack
 
-from sailenv_ros.frame.lens_rays import reach_view, unit_rays
+from sailenv_ros.frame.lens_rays import reach_view
+from sailenv_ros.frame.motion.rigid_motion import camera_points
 from sailenv_ros.gym.eye import Look
 from sailenv_ros.gym.ground import random_cell
 from sailenv_ros.gym.point_nav import EYE_M, STRIDE, TURN
@@ -67,8 +67,6 @@ class ExploreEnv(RoomEnv):
         lens = self.eye.intrinsics
         self._reach = reach_view(lens)
         self.needs = frozenset({self._reach, "instance"})
-        rays = lens.rays() if lens.is_pinhole else unit_rays(lens)
-        self._rays: NDArray[np.float64] = rays.reshape(-1, 3).astype(np.float64)
         self._walker = Walker(0.0, 0.0, 0.0, EYE_M)
         self._seen = np.zeros((0, 0), bool)
         self._ids = self._seen_ids = frozenset[int]()
@@ -109,9 +107,8 @@ class ExploreEnv(RoomEnv):
     def _mark(self, look: Look) -> None:
         """Mark the cells whose floor is in a picture."""
         space = self.room.space
-        reach = look.views[self._reach].reshape(-1)
-        there = np.flatnonzero(np.isfinite(reach))
-        points = self._rays[there] * reach[there, None].astype(np.float64)
+        reach = look.views[self._reach]
+        points = camera_points(reach, self.eye.intrinsics)[np.isfinite(reach)]
         pose = look.past.camera.world_from_camera
         points = points @ pose[:3, :3].T + pose[:3, 3]
         low = np.abs(points[:, 2] - space.body.floor_m) <= space.body.step_m

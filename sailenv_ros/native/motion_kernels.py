@@ -37,7 +37,7 @@ _MOVE = RecordKernel(
     ("array", "motions displacements from_lens to_lens"),
     ("integer", "bent"),
     ("array", "from_rays"),
-    ("integer", "to_model"),
+    ("integer", "from_parallel to_model"),
     ("array", "to_coefficients"),
     ("number", "to_limit"),
     ("integer", "same_lens to_height to_width"),
@@ -50,7 +50,9 @@ _MOVE = RecordKernel(
 _TRANSFORM = RecordKernel(
     "transform_points",
     *_PIXELS,
-    ("array", "transforms lens rays points"),
+    ("array", "transforms lens rays"),
+    ("integer", "parallel"),
+    ("array", "points"),
 )
 
 
@@ -61,7 +63,9 @@ class BentLenses(NamedTuple):
     ----------
     from_rays : (H, W, 3) float64 or None
         Unit rays of the one picture's pixels, along which its depth is; nan where the lens sees
-        nothing. None for a pin-hole.
+        nothing. None where depth is along the axis.
+    from_parallel : bool
+        Whether the rays of that picture are parallel.
     to_model : int
         `lens_models.LensModel.number` of the other lens; -1 for a pin-hole.
     to_coefficients : (MOST_COEFFICIENTS,) float64
@@ -72,6 +76,7 @@ class BentLenses(NamedTuple):
     """
 
     from_rays: NDArray[np.float64] | None
+    from_parallel: bool
     to_model: int
     to_coefficients: NDArray[np.float64]
     to_limit_rad: float
@@ -161,7 +166,8 @@ def move_points(
         ``hidden`` (H, W) bool
             Where the other picture does not show it, for whatever reason.
     bent : BentLenses or None
-        Where a lens is no pin-hole. Its picture's depths are distances along the rays.
+        Where a lens is no pin-hole. Its picture's depths are distances along the rays, unless these
+        are parallel.
     by_rows : RowMotions or None
         Where a shutter rolls; counts instead of `motions`, with its groups as rows. Excludes
         ``scene_flow``.
@@ -210,6 +216,7 @@ def move_points(
         to_lens=to_lens,
         bent=bent is not None,
         from_rays=None if bent is None else bent.from_rays,
+        from_parallel=bent is not None and bent.from_parallel,
         to_model=-1 if bent is None else bent.to_model,
         to_coefficients=None if bent is None else bent.to_coefficients,
         to_limit=0.0 if bent is None else bent.to_limit_rad,
@@ -236,6 +243,7 @@ def transform_points(
     lens: NDArray[np.void],
     *,
     rays: NDArray[np.float64] | None = None,
+    parallel: bool = False,
     threads: int,
 ) -> NDArray[np.float32]:
     """Return each pixel's surface point in other axes.
@@ -249,6 +257,8 @@ def transform_points(
     lens : (1,) lens.LENS
     rays : (H, W, 3) float64 or None
         As `BentLenses.from_rays`.
+    parallel : bool
+        As `BentLenses.from_parallel`.
     threads : int
 
     Returns
@@ -273,6 +283,7 @@ def transform_points(
         transforms=transforms,
         lens=lens,
         rays=rays,
+        parallel=parallel,
         points=points,
     )
     return points

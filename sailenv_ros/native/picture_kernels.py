@@ -28,6 +28,7 @@ _AMBIENT = RecordKernel(
     "ambient_visibility",
     ("integer", "height width"),
     ("array", "surface baked pattern lens rays"),
+    ("integer", "parallel"),
     ("number", "radius_m least_reach_px reach_px bias scale same_surface"),
     ("integer", "step"),
     ("array", "inverse visibility"),
@@ -77,6 +78,7 @@ def find_ambient_visibility(
     pattern: NDArray[np.float32],
     *,
     rays: NDArray[np.float32] | None = None,
+    parallel: bool = False,
     threads: int,
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Compute the share of the light from around that arrives, at half resolution.
@@ -93,7 +95,9 @@ def find_ambient_visibility(
         For each place in a block, points in the unit disc.
     rays : (h, w, 3) float32 or None
         Rays of the pixels of even row and column, of any length, along which the surface tells
-        distances; None through a pin-hole.
+        distances; None where it tells depths.
+    parallel : bool
+        Whether the lens has parallel rays.
     threads : int
 
     Returns
@@ -128,6 +132,7 @@ def find_ambient_visibility(
         pattern=pattern,
         lens=lens,
         rays=rays,
+        parallel=parallel,
         **settings._asdict(),
         inverse=inverse,
         visibility=visibility,

@@ -116,7 +116,7 @@ LIGHT = structure(
 VIEW = structure(
     ("camera_from_world world_from_camera", "<f8", 16),
     ("lens", LENS),
-    ("width height smooth_edges", "<i8"),
+    ("width height smooth_edges parallel", "<i8"),
     ("table_at fine_table_at", ADDRESS),
 )
 

@@ -12,8 +12,7 @@ from typing import Any, Literal, Protocol, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import AdaptedExposure, Observation, WorldSnapshot
 
@@ -22,7 +21,6 @@ __all__ = [
     "BackendName",
     "RenderBackend",
     "RenderedViews",
-    "require_drawable",
 ]
 
 BackendName: TypeAlias = Literal["auto", "native", "gl"]
@@ -41,7 +39,7 @@ class RenderedViews:
         The wanted views as `frame.VIEWS` says; fresh arrays, the caller's own.
     depth : (H, W) float32 or None
         The depth view, wanted or not, if it was made on the way: the next frame's past. Through a
-        lens other than a pin-hole the view ``range``.
+        lens that bends straight lines the view ``range``.
     adapted : AdaptedExposure or None
         Where the camera's exposure is automatic, that of this picture, or without one the previous.
     timings_s : mapping of str to float
@@ -52,18 +50,6 @@ class RenderedViews:
     depth: NDArray[np.float32] | None
     adapted: AdaptedExposure | None = None
     timings_s: Mapping[str, float] = field(default_factory=dict)
-
-
-def require_drawable(intrinsics: CameraIntrinsics) -> None:
-    """Refuse a lens that no renderer draws through.
-
-    Raises
-    ------
-    InvalidRequest
-    """
-    if not intrinsics.is_pinhole and intrinsics.law.model.parallel:
-        accepted = "a model whose rays meet in one point, since renderers draw through no other"
-        raise InvalidRequest("distortion_model", intrinsics.distortion_model, accepted)
 
 
 class RenderBackend(Protocol):
@@ -111,8 +97,7 @@ class RenderBackend(Protocol):
         Raises
         ------
         UnknownName, InvalidRequest
-            If there is no such view, or none that this renderer can make, or none through this
-            lens.
+            If there is no such view, or none that this renderer can make.
         """
 
     def close(self) -> None:

@@ -8,11 +8,18 @@ from typing import Annotated, Any, ClassVar, TypeAlias
 from pydantic import Field
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.native.lens_models import lens_models
 from sailenv_ros.scene.field_types import Number, Text
 from sailenv_ros.scene.fields import Rule, SceneModel
 from sailenv_ros.scene.messages import shown
 from sailenv_ros.scene.rules import Faults, few_samples, within_half
-from sailenv_ros.types.camera import INTRINSICS_LIMITS, MAX_SIZE_PX, CameraIntrinsics
+from sailenv_ros.types.camera import (
+    INTRINSICS_LIMITS,
+    MAX_SIZE_PX,
+    SENSOR_OF_PARALLEL_RAYS,
+    CameraIntrinsics,
+)
+from sailenv_ros.types.depth_sensor_names import IDEAL
 from sailenv_ros.types.validation import is_finite_number
 
 __all__ = ["LensSpec", "intrinsics_key"]
@@ -67,6 +74,16 @@ def _makes_a_lens(entry: Mapping[str, Any]) -> Faults:
             yield (beside,), f"does not fit: {key} {sentence}"
 
 
+def _measures_from_one_point(entry: Mapping[str, Any]) -> Faults:
+    """Refuse what `require_fitting` does of depth sensors."""
+    picture, name = entry.get("picture"), entry.get("distortion_model")
+    model = lens_models().get(name) if isinstance(name, str) else None
+    sensor = picture.get("depth_sensor", IDEAL) if isinstance(picture, Mapping) else IDEAL
+    if model is not None and model.parallel and sensor != IDEAL:
+        accepted = f"it must be {SENSOR_OF_PARALLEL_RAYS}, got {shown(sensor)}"
+        yield ("picture", "depth_sensor"), f"is refused: {accepted}"
+
+
 class LensSpec(SceneModel):
     """Base of entries that describe a camera: size and lens of its pictures."""
 
@@ -75,6 +92,7 @@ class LensSpec(SceneModel):
         within_half("cx_offset", "width", _DEFAULTS.width),
         within_half("cy_offset", "height", _DEFAULTS.height),
         _makes_a_lens,
+        _measures_from_one_point,
     )
 
     width: _Size = Field(default=_DEFAULTS.width, description="of its pictures [px]")
@@ -93,7 +111,8 @@ class LensSpec(SceneModel):
     )
     fx: _Focal = Field(
         default=_DEFAULTS.fx_px,
-        description="focal length across [px], instead of `vertical_fov`; 0: follows from it",
+        description="focal length across [px], instead of `vertical_fov`; 0: follows from it; "
+        "of `orthographic` [px/m]",
     )
     fy: _Focal = Field(default=_DEFAULTS.fy_px, description="focal length down [px], beside `fx`")
     distortion_model: Annotated[str, Text(r".{0,60}", "the name of a model of lenses")] = Field(

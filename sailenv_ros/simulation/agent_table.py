@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from sailenv_ros.errors import InvalidState, NameTaken, UnknownName
-from sailenv_ros.render.contract import require_drawable
 from sailenv_ros.simulation.agent_record import AgentRecord
 from sailenv_ros.types.agents import MAX_AGENTS, AgentPose, AgentSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -55,11 +54,10 @@ class AgentTable:
         ------
         NameTaken, UnknownName, InvalidRequest
             If the name is in use, the mover, what it faces or what carries it unknown, or there are
-            too many agents, or no renderer draws through its lens.
+            too many agents.
         """
         cameras = spec.camera_specs
         for one in (spec, *cameras):
-            require_drawable(one.intrinsics)
             if one.name in self._records:
                 raise NameTaken("agent", one.name)
         count = len(self._records) + 1 + len(cameras)
@@ -202,10 +200,9 @@ class AgentTable:
         Raises
         ------
         InvalidRequest
-            If its depth picture would then end before the near plane, or its picture be too large
-            for its supersampling; or if no renderer draws through it.
+            If its depth picture would then end before the near plane, its picture be too large for
+            its supersampling, or its depth sensor have parallel rays.
         """
-        require_drawable(intrinsics)
         record = self[name]
         if intrinsics == record.spec.intrinsics:
             return
@@ -220,7 +217,8 @@ class AgentTable:
         Raises
         ------
         InvalidRequest
-            If pictures of its size would be too large for that supersampling.
+            If pictures of its size would be too large for that supersampling, or the depth sensor
+            would have parallel rays.
         """
         record = self[name]
         record.spec = replace(record.spec, picture=settings)

@@ -40,9 +40,12 @@ def view_planes(camera: Camera, distance_m: float) -> NDArray[np.float64]:
             (0.0, 0.0, -1.0),
         ]
     )
+    sides_m = np.zeros(6)
+    if intrinsics.is_parallel:
+        sides_m[:4], optical[:4, 2] = optical[:4, 2], 0.0
     optical /= np.linalg.norm(optical, axis=1, keepdims=True)
     normals = optical @ camera.world_from_camera[:3, :3].T
-    offsets = -normals @ np.asarray(camera.pose.position_m)
+    offsets = sides_m - normals @ np.asarray(camera.pose.position_m)
     offsets[4] -= intrinsics.near_m
     offsets[5] += distance_m
     return np.column_stack([normals, offsets])

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.camera import CameraIntrinsics, require_fitting
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.look_at import LookAt
 from sailenv_ros.types.picture_settings import PictureSettings
@@ -106,7 +106,7 @@ class AgentSpec:
                 "depth_range_m", self.depth_range_m, f"a number above near_m = {near:g} [m]"
             )
         PictureSettings.checked("picture", self.picture)
-        self.picture.require_drawable(self.intrinsics.width, self.intrinsics.height)
+        require_fitting(self.intrinsics, self.picture)
         if self.extrinsics is not None:
             self._require_carried()
         if self.cameras is not None:

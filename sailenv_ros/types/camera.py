@@ -11,6 +11,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.types.depth_sensor_names import IDEAL
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
 from sailenv_ros.types.intrinsics import CameraIntrinsics
 from sailenv_ros.types.lens_settings import INTRINSICS_LIMITS, MIN_SIZE_PX
@@ -21,9 +23,30 @@ __all__ = [
     "INTRINSICS_LIMITS",
     "MAX_SIZE_PX",
     "MIN_SIZE_PX",
+    "SENSOR_OF_PARALLEL_RAYS",
     "Camera",
     "CameraIntrinsics",
+    "require_fitting",
 ]
+
+
+SENSOR_OF_PARALLEL_RAYS = (
+    f"{IDEAL!r} where rays are parallel, since depth sensors look from one point"
+)
+"""Their depth sensors that are accepted, in words."""
+
+
+def require_fitting(intrinsics: CameraIntrinsics, picture: PictureSettings) -> None:
+    """Refuse settings that the pictures of a lens cannot have.
+
+    Raises
+    ------
+    InvalidRequest
+        If there would be too many samples, or a depth sensor would have parallel rays.
+    """
+    picture.require_drawable(intrinsics.width, intrinsics.height)
+    if intrinsics.is_parallel and picture.depth_sensor != IDEAL:
+        raise InvalidRequest("depth_sensor", picture.depth_sensor, SENSOR_OF_PARALLEL_RAYS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +66,8 @@ class Camera(RebuiltByFields):
     Raises
     ------
     InvalidRequest
-        If the picture would have to be drawn larger than `MAX_SIZE_PX`.
+        If the picture would have to be drawn larger than `MAX_SIZE_PX`, or its depth sensor has
+        parallel rays.
     """
 
     intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
@@ -52,7 +76,7 @@ class Camera(RebuiltByFields):
     name: str = ""
 
     def __post_init__(self) -> None:
-        self.picture.require_drawable(self.intrinsics.width, self.intrinsics.height)
+        require_fitting(self.intrinsics, self.picture)
 
     def of_samples(self) -> Camera:
         """Return the camera whose pixels are the samples of this one's picture."""

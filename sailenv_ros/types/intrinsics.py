@@ -157,7 +157,7 @@ class CameraIntrinsics(LensParameters):
         than 80° from the axis.
         """
         right, bottom = self.width - 0.5, self.height - 0.5
-        if self.is_pinhole:
+        if self.is_pinhole or self.is_parallel:
             return self.rays_through([(-0.5, -0.5), (right, bottom)])[:, :2]
         ends = [(-0.5, self.cy), (self.cx, -0.5), (right, self.cy), (self.cx, bottom)]
         rays = self.rays_through(ends)
@@ -302,7 +302,7 @@ class CameraIntrinsics(LensParameters):
         """
         ends = self.rays_through(pixels)
         origins = np.zeros_like(ends)
-        if not self.is_pinhole and self.law.model.parallel:
+        if self.is_parallel:
             origins[..., :2] = ends[..., :2]
         return origins, ends - origins
 
@@ -310,7 +310,7 @@ class CameraIntrinsics(LensParameters):
         self, ends: NDArray[np.float64], depth: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         points = ends * depth[..., None]
-        if not self.is_pinhole and self.law.model.parallel:
+        if self.is_parallel:
             points[..., :2] = np.where(np.isnan(points[..., :2]), np.nan, ends[..., :2])
         return points
 
@@ -325,7 +325,7 @@ class CameraIntrinsics(LensParameters):
     def _at_depth_one(
         self, rays: NDArray[np.float64], pixels: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        if self.law.model.parallel:
+        if self.is_parallel:
             rays[..., :2] = self.in_plane(pixels)
             return rays
         rays[~(rays[..., 2] > 0.0)] = np.nan

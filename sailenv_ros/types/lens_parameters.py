@@ -75,6 +75,11 @@ class LensParameters(RebuiltByFields):
         """True if straight lines stay straight and each pixel sees something."""
         return self.distortion_model == PINHOLE and self.max_angle_deg == 0.0
 
+    @property
+    def is_parallel(self) -> bool:
+        """True if all rays lead along the axis, from places in the camera's plane."""
+        return not self.is_pinhole and self.law.model.parallel
+
     @cached_property
     def law(self) -> LensLaw:
         """From rays to places of the normalised plane: (u - cx) / fx, (v - cy) / fy."""

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.lens_rays import tells_depth
 from sailenv_ros.frame.truth.object_table import EDGES, ObjectTable
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
@@ -123,16 +124,17 @@ def seen_segments(camera: Camera, starts: ArrayLike, ends: ArrayLike) -> list[li
     -------
     lines : list of N lists
         Straight pieces u, v, u, v [px] of each line, without those of which an end is not seen: one
-        through a pin-hole, up to `PIECES` through other lenses. None leads across the seam of a
-        picture that goes all around.
+        where lines stay straight, up to `PIECES` through other lenses. None leads across the seam
+        of a picture that goes all around.
     """
     lens = camera.intrinsics
-    shares = np.linspace(0.0, 1.0, 2 if lens.is_pinhole else PIECES + 1)[:, None]
+    straight = tells_depth(lens)
+    shares = np.linspace(0.0, 1.0, 2 if straight else PIECES + 1)[:, None]
     first, last = np.asarray(starts, np.float64), np.asarray(ends, np.float64)
     places = seen_points(camera, first[:, None] + shares * (last - first)[:, None])
     pieces = np.concatenate([places[:, :-1], places[:, 1:]], axis=-1)
     seen = np.isfinite(pieces).all(axis=-1)
-    if not lens.is_pinhole:
+    if not straight:
         seen &= np.abs(pieces[..., 2] - pieces[..., 0]) < 0.5 * lens.width
     return [
         [tuple(piece) for piece in line[kept].tolist()]

@@ -5,12 +5,8 @@ Corners and focal lengths are sums of few powers of 2, as in `test_off_centre`.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import pytest
 
-from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
@@ -52,16 +48,3 @@ def test_objects_alone_have_every_second_row_too() -> None:
     renderer.close()
     for number in range(1, 6):
         np.testing.assert_array_equal(small.mask(number), large.mask(number)[::2])
-
-
-def test_what_cannot_be_drawn_through_is_refused(render: Render) -> None:
-    """A lens of parallel rays: in one sentence."""
-    now = snapshot_of(crowd())
-    lens: dict[str, Any] = {"distortion_model": "orthographic", "fx_px": 9.0, "fy_px": 9.0}
-    accepted = "distortion_model must be a model whose rays meet in one point"
-    with pytest.raises(InvalidRequest, match=accepted):
-        render(now, camera_at(**lens), "depth")
-    renderer = AmodalRenderer()
-    with pytest.raises(InvalidRequest, match=accepted):
-        renderer.draw(now, camera_at(**lens))
-    renderer.close()

@@ -29,7 +29,7 @@ from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from tests.support.lockstep_core import lockstep_core
-from tests.support.ray_cast import cast, rays_of
+from tests.support.ray_cast import cast, points_met
 from tests.support.tiny_scenes import (
     FRAME_NS,
     SUN,
@@ -65,6 +65,9 @@ LENSES = {
         fx_px=30.0,
         fy_px=30.0,
         max_angle_deg=95.0,
+    ),
+    "orthographic": CameraIntrinsics(
+        width=WIDTH, height=HEIGHT, distortion_model="orthographic", fx_px=26.0, fy_px=24.0
     ),
 }
 
@@ -153,7 +156,7 @@ def test_each_row_is_what_rays_of_its_own_instant_meet(native: NativeRenderer, n
     """Ids, distances to 1e-5, and object coordinates, away from edges; nothing is between rows."""
     lens = LENSES[name]
     now = observed(lens, 0.05)
-    reach = "depth" if lens.is_pinhole else "range"
+    reach = "range" if name == "equidistant" else "depth"
     views = seen(native, now, "instance", reach, "object_coords", "normals")
     compared = 0
     for row, time_s in enumerate(row_times(0.05)):
@@ -166,7 +169,7 @@ def test_each_row_is_what_rays_of_its_own_instant_meet(native: NativeRenderer, n
         np.testing.assert_allclose(views[reach][row][away], hits.depth[row][away], rtol=1e-5)
         np.testing.assert_allclose(views["normals"][row][away], hits.normal[row][away], atol=1e-5)
         met = away & (ids > 0)
-        points = rays_of(camera)[row][met] * hits.depth[row][met][:, None]
+        points = points_met(camera, hits.depth)[row][met]
         points = points @ camera.world_from_camera[:3, :3].T + camera.world_from_camera[:3, 3]
         for column, point in zip(np.flatnonzero(met), points, strict=True):
             pose = thing_pose(int(ids[column]) - 1, time_s).matrix()

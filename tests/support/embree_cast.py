@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import WorldSnapshot
-from tests.support.ray_cast import rays_of
+from tests.support.ray_cast import is_parallel, origins_of, rays_of
 
 
 class RayCast:
@@ -61,12 +61,15 @@ class RayCast:
         directions = rays @ camera.world_from_camera[:3, :3].T
         eye = camera.world_from_camera[:3, 3]
         # Which side of a triangle is seen is a matter of where the eye is, not of the ray.
-        away = np.einsum("ni,ni->n", self._corners[:, 0] - eye, self._normals) >= 0.0
+        towards = self._corners[:, 0] - eye
+        if is_parallel(camera):
+            towards = np.broadcast_to(camera.world_from_camera[:3, 2], towards.shape)
+        away = np.einsum("ni,ni->n", towards, self._normals) >= 0.0
         drawn = np.flatnonzero(~(away & self._one_sided))
         scene = EmbreeScene()
         mesh = TriangleMesh(scene, self._corners[drawn].astype(np.float32))
-        origins = np.broadcast_to(eye, directions.shape).astype(np.float32)
-        hit = np.asarray(scene.run(origins, directions.astype(np.float32)))
+        origins = origins_of(camera).reshape(-1, 3) @ camera.world_from_camera[:3, :3].T + eye
+        hit = np.asarray(scene.run(origins.astype(np.float32), directions.astype(np.float32)))
         del mesh
         met = hit >= 0
         triangle = drawn[hit[met]]
@@ -75,7 +78,7 @@ class RayCast:
         masked = np.zeros(len(directions), bool)
         # Where the plane of the triangle is met does not depend on embree's precision.
         normal = self._normals[triangle]
-        along = np.einsum("ni,ni->n", self._corners[triangle, 0] - eye, normal)
+        along = np.einsum("ni,ni->n", self._corners[triangle, 0] - origins[met], normal)
         depth[met] = along / np.einsum("ni,ni->n", directions[met], normal)
         ids[met], masked[met] = self._ids[triangle], self._masked[triangle]
         shape = intrinsics.height, intrinsics.width

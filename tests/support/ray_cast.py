@@ -55,12 +55,41 @@ def rays_of(camera: Camera) -> NDArray[np.float64]:
     return lens.rays() if lens.is_pinhole else lens.unit_rays()
 
 
+def is_parallel(camera: Camera) -> bool:
+    """Whether the rays are side by side."""
+    return camera.intrinsics.distortion_model == "orthographic"
+
+
+def pixels_of(camera: Camera) -> NDArray[np.float64]:
+    """(H, W, 2) column and row of each pixel."""
+    lens = camera.intrinsics
+    u, v = np.meshgrid(np.arange(lens.width), np.arange(lens.height))
+    return np.stack([u, v], axis=-1).astype(np.float64)
+
+
+def origins_of(camera: Camera) -> NDArray[np.float64]:
+    """(H, W, 3) where rays begin: at the eye, or side by side, fx and fy to a metre."""
+    lens = camera.intrinsics
+    origins = np.zeros((lens.height, lens.width, 3))
+    if is_parallel(camera):
+        centre = ((lens.width - 1) / 2 + lens.cx_offset_px, (lens.height - 1) / 2)
+        origins[..., 0] = (pixels_of(camera)[..., 0] - centre[0]) / lens.fx_px
+        origins[..., 1] = (pixels_of(camera)[..., 1] - centre[1] - lens.cy_offset_px) / lens.fy_px
+    return origins
+
+
+def points_met(camera: Camera, depth: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(H, W, 3) points of the optical frame where rays meet something, after depths (H, W)."""
+    with np.errstate(invalid="ignore"):
+        return origins_of(camera) + rays_of(camera) * depth[..., None]
+
+
 def cast(snapshot: WorldSnapshot, camera: Camera) -> Hits:
     """Cast the ray of every pixel against every front-facing triangle.
 
     Through a lens that is no pin-hole the result's depth is the distance along the ray.
     """
-    rays = rays_of(camera).reshape(-1, 3)
+    rays, origins = (array.reshape(-1, 3) for array in (rays_of(camera), origins_of(camera)))
     best = np.full(len(rays), np.inf)
     row = np.full(len(rays), -1)
     number = np.full(len(rays), -1)
@@ -72,7 +101,7 @@ def cast(snapshot: WorldSnapshot, camera: Camera) -> Hits:
             points = part.mesh.positions.astype(np.float64) * np.asarray(drawn.scale)
             points = points @ eye_from_body[:3, :3].T + eye_from_body[:3, 3]
             for a, b, c in points[part.mesh.triangles]:
-                depth = _meet(rays, a, b, c)
+                depth = _meet(rays, origins, a, b, c)
                 nearer = depth < best
                 best[nearer], row[nearer], number[nearer] = depth[nearer], index, count
                 normal = np.cross(b - a, c - a)
@@ -84,17 +113,20 @@ def cast(snapshot: WorldSnapshot, camera: Camera) -> Hits:
     )
 
 
-def _meet(rays: NDArray[np.float64], a: Any, b: Any, c: Any) -> NDArray[np.float64]:
-    """Depth at which rays from the origin meet a triangle's front; inf where they do not."""
+def _meet(
+    rays: NDArray[np.float64], origins: NDArray[np.float64], a: Any, b: Any, c: Any
+) -> NDArray[np.float64]:
+    """Depth at which rays meet a triangle's front; inf where they do not."""
     ab, ac = b - a, c - a
     p = np.cross(rays, ac)
     determinant = p @ ab
+    begin = origins - a
     with np.errstate(divide="ignore", invalid="ignore"):
-        u = -(p @ a) / determinant
-        q = np.cross(-a, ab)
-        v = (rays @ q) / determinant
-        t = (ac @ q) / determinant
-    hit = (determinant > 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
+        u = (p * begin).sum(axis=-1) / determinant
+        q = np.cross(begin, ab)
+        v = (rays * q).sum(axis=-1) / determinant
+        t = (q @ ac) / determinant
+        hit = (determinant > 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
     return np.where(hit, t, np.inf)
 
 
@@ -108,19 +140,23 @@ def flow_by_arithmetic(
     """(H, W, 2) velocity [px/s] of the point that each pixel sees; nan where it had no place.
 
     The point goes from the picture to the world, into its body, with the body to where it was,
-    and from there into the earlier picture. What hits nothing is a direction.
+    and from there into the earlier picture. What hits nothing is a direction, which has no place
+    where rays are parallel unless nothing has moved.
     """
     dt_s = (now.sim_time_ns - past.sim_time_ns) * 1e-9
     rays = rays_of(camera)
-    here = camera.intrinsics.project(rays)
+    here = pixels_of(camera)
+    met = points_met(camera, hits.depth)
     result = np.full((*hits.row.shape, 2), np.nan)
     nothing = hits.row < 0
     directions = rays[nothing] @ camera.world_from_camera[:3, :3].T
     then = directions @ past_camera.camera_from_world[:3, :3].T
     result[nothing] = here[nothing] - past_camera.intrinsics.project(then)
+    if is_parallel(past_camera):
+        result[nothing] = 0.0 if past_camera == camera else np.nan
     for row in range(len(now.contents.instances)):
         chosen = hits.row == row
-        eye = rays[chosen] * hits.depth[chosen][:, None]
+        eye = met[chosen]
         world = eye @ camera.world_from_camera[:3, :3].T + camera.world_from_camera[:3, 3]
         body = (world - now.world_from_body[row][:3, 3]) @ now.world_from_body[row][:3, :3]
         world = body @ past.world_from_body[row][:3, :3].T + past.world_from_body[row][:3, 3]

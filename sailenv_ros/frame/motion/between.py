@@ -39,7 +39,8 @@ class Motion:
     valid : (H, W) bool
         Where `flow` exists: the surface is known (its depth is not nan), its instance is there in
         both frames with one history (it was not spawned, despawned or teleported in between), and
-        the point is in front of the other camera. The background has flow by the camera's turn.
+        the point is in front of the other camera. The background has flow by the camera's turn;
+        where the other's rays are parallel only if the camera rests.
     occluded : (H, W) bool
         The point is within the other frame's picture, which shows another surface there.
     out_of_view : (H, W) bool

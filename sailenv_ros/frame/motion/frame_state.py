@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.data import FrameData
-from sailenv_ros.frame.lens_rays import depth_shares, ranges_of_depths
+from sailenv_ros.frame.lens_rays import depth_shares, ranges_of_depths, tells_depth
 from sailenv_ros.frame.motion.rigid_motion import ObservedPoses
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.instance_states import InstanceStates
@@ -59,7 +59,7 @@ class FrameState:
         )
 
     def surfaces(self, what: str) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
-        """Return depth and instance ids; through a lens other than a pin-hole range and ids.
+        """Return depth and instance ids; through a lens that bends straight lines range and ids.
 
         Parameters
         ----------
@@ -79,7 +79,7 @@ class FrameState:
             )
             raise InvalidRequest(what, missing, "a frame with the views depth and instance")
         lens, reach = self.camera.intrinsics, self.depth
-        if not lens.is_pinhole:
+        if not tells_depth(lens):
             reach = ranges_of_depths(self.depth, lens) if self.range is None else self.range
             if self.range is None and (depth_shares(lens) <= 0.0).any():
                 accepted = "a frame with the view range, since its lens sees to the side"

@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import unit_rays
+from sailenv_ros.frame.lens_rays import tells_depth, unit_rays
 from sailenv_ros.native.motion_kernels import RowMotions, transform_points
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import invert
@@ -106,7 +106,8 @@ def motion_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     """Compute how what the one instant's camera sees has moved at the other.
 
     Instances that there are at both, with one history, have a motion; and so has the background, by
-    the camera's turn.
+    the camera's turn. Where the other's rays are parallel it has none unless the camera rests: a
+    direction alone has no place there.
     """
     _, rows, others = np.intersect1d(begin.ids, end.ids, assume_unique=True, return_indices=True)
     same = begin.histories[rows] == end.histories[others]
@@ -119,7 +120,9 @@ def motion_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     world_from_camera = begin.camera.world_from_camera
     to_camera = end.camera.camera_from_world
     camera_is_still = np.array_equal(begin.camera.camera_from_world, to_camera)
-    if not camera_is_still:
+    if not camera_is_still and end.camera.intrinsics.is_parallel:
+        row_of_instance[0] = 0
+    elif not camera_is_still:
         turn = to_camera[:3, :3] @ world_from_camera[:3, :3]
         motions[_SKY_ROW, :, :3] = turn - np.eye(3)
     if len(rows):
@@ -146,7 +149,7 @@ def object_points(
     Parameters
     ----------
     depth, instance : (H, W) float32, uint16
-        The camera's views; through a lens other than a pin-hole ``range`` instead of ``depth``.
+        The camera's views; of the two that tell it the one that `reach_view` names.
     poses : ObservedPoses
     threads : int
 
@@ -165,9 +168,15 @@ def object_points(
         own_from_camera = invert(poses.world_from_instance) @ poses.camera.world_from_camera
         transforms[1:] = own_from_camera[:, :3]
     lens = poses.camera.intrinsics
-    rays = None if lens.is_pinhole else unit_rays(lens)
     return transform_points(
-        depth, instance, rows, transforms, lens.lens_record, rays=rays, threads=threads
+        depth,
+        instance,
+        rows,
+        transforms,
+        lens.lens_record,
+        rays=None if tells_depth(lens) else unit_rays(lens),
+        parallel=lens.is_parallel,
+        threads=threads,
     )
 
 
@@ -192,9 +201,11 @@ def _object_points_by_rows(
 
 def camera_points(reach: NDArray[np.float32], lens: CameraIntrinsics) -> NDArray[np.float64]:
     """Return (H, W, 3) float64: points of the optical frame, from depths, or ranges, of pixels."""
-    rays = lens.rays() if lens.is_pinhole else unit_rays(lens)
+    rays = lens.rays() if tells_depth(lens) else unit_rays(lens)
     with np.errstate(invalid="ignore"):
         points: NDArray[np.float64] = rays * reach[..., None].astype(np.float64)
+    if lens.is_parallel:
+        points[..., :2] = rays[..., :2]
     return points
 
 

@@ -59,6 +59,8 @@ def rolling_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     is_still &= np.array_equal(begin.camera.world_from_camera, end.camera.world_from_camera)
     at_rest = np.zeros(groups, np.bool_)
     at_rest[[_SKY, _STILL]] = is_still
+    if not is_still and end.camera.intrinsics.is_parallel:
+        group_of_instance[0] = _UNKNOWN  # see `motion_table`
     return MotionTable(
         row_of_instance=group_of_instance,
         motions=np.zeros((groups, 3, 4)),

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame.lens_rays import reach_lines, reach_of_points
 from sailenv_ros.frame.motion.frame_state import (
     AnyFrame,
     FrameState,
@@ -171,12 +172,12 @@ def _found(
         if not _within(pixels, moment).all():
             accepted = f"within the picture: -0.5 to {lens.width - 0.5} and {lens.height - 0.5}"
             raise InvalidRequest("pixel", pixels[~_within(pixels, moment)][0], accepted)
-        rays = lens.rays_through(pixels) if lens.is_pinhole else lens.unit_rays_through(pixels)
-        directions = rays @ moment.camera.world_from_camera[:3, :3].T
-        eye = np.broadcast_to(moment.camera.world_from_camera[:3, 3], directions.shape)
+        origins, rays = reach_lines(lens, pixels)
+        turn = moment.camera.world_from_camera[:3, :3]
+        directions = rays @ turn.T
+        eye = origins @ turn.T + moment.camera.world_from_camera[:3, 3]
         hits = geometry.cast(states, eye, directions)
-        # The third coordinate of a pin-hole's ray is 1, so that its distances are depths, as clip
-        # distances are; through other lenses these are along the ray.
+        # Distances are depths, or along the rays, as clip distances are.
         met = np.flatnonzero((hits.instance > 0) & (hits.distance <= lens.far_m))
         at = states.row_of_id[hits.instance[met]]
         world = eye[met] + directions[met] * hits.distance[met, None]
@@ -206,15 +207,18 @@ def _follow(
     eye = camera.world_from_camera[:3, 3]
     optical = (world - eye) @ camera.world_from_camera[:3, :3]
     pixels = camera.intrinsics.project(optical)
-    is_pinhole = camera.intrinsics.is_pinhole
-    reach = optical[:, 2] if is_pinhole else np.linalg.norm(optical, axis=-1)
+    reach = reach_of_points(optical, camera.intrinsics)
     seen = _within(pixels, moment) & (reach <= camera.intrinsics.far_m)
     tracks.positions[chosen, number] = world
     tracks.pixels[chosen, number] = pixels
     tracks.in_view[chosen, number] = seen
     asked = np.flatnonzero(seen)
-    directions = world[asked] - eye
-    hits = geometry.cast(states, np.broadcast_to(eye, directions.shape), directions)
+    if camera.intrinsics.is_parallel:
+        axis = camera.world_from_camera[:3, 2]
+        origins = world[asked] - reach[asked, None] * axis
+    else:
+        origins = np.broadcast_to(eye, (len(asked), 3))
+    hits = geometry.cast(states, origins, world[asked] - origins)
     own = hits.instance == tracks.instances[chosen[asked]]
     tracks.visible[chosen[asked], number] = own & (np.abs(hits.distance - 1.0) <= SURFACE)
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.frame.data import FrameData
-from sailenv_ros.frame.lens_rays import reach_of
+from sailenv_ros.frame.lens_rays import reach_of, reach_of_points
 from sailenv_ros.frame.truth.object_table import (
     CORNER_SIGNS,
     Keypoints,
@@ -160,7 +160,7 @@ def _is_visible(
 ) -> NDArray[np.bool_]:
     """Return which points of the optical frame lie in the picture with nothing before them."""
     lens: CameraIntrinsics = frame.camera.intrinsics
-    depths = optical[..., 2] if lens.is_pinhole else np.linalg.norm(optical, axis=-1)
+    depths = reach_of_points(optical, lens)
     with np.errstate(invalid="ignore"):
         u, v = np.rint(pixels[..., 0]), np.rint(pixels[..., 1])
         inside = (u >= 0) & (u < lens.width) & (v >= 0) & (v < lens.height)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame.lens_rays import reach_of, unit_rays
+from sailenv_ros.frame.lens_rays import reach_of, tells_depth, unit_rays
 from sailenv_ros.frame.truth.ply import ply_bytes
 from sailenv_ros.system.files import storage_errors, write_file
 
@@ -75,15 +75,16 @@ def points_of(frame: FrameData, *, in_world: bool = True) -> PointCloud:
     See `Frame.points`.
     """
     lens = frame.camera.intrinsics
-    found = frame["depth"] if lens.is_pinhole else reach_of(frame.views, lens)
+    found = frame["depth"] if tells_depth(lens) else reach_of(frame.views, lens)
     reach = np.asarray(found, np.float32).reshape(-1)
     pixels = np.flatnonzero(np.isfinite(reach))
     rows, columns = np.divmod(pixels, lens.width)
-    if lens.is_pinhole:
-        rays = lens.rays_through(np.stack([columns, rows], axis=-1))
+    distances = reach[pixels].astype(np.float64)
+    if tells_depth(lens):
+        seen = lens.points_at(np.stack([columns, rows], axis=-1), distances)
     else:
-        rays = unit_rays(lens)[rows, columns]
-    x, y, z = np.moveaxis(rays, -1, 0) * reach[pixels].astype(np.float64)
+        seen = unit_rays(lens)[rows, columns] * distances[:, None]
+    x, y, z = np.moveaxis(seen, -1, 0)
     pose = frame.camera.world_from_camera if in_world else np.eye(4)
     count = len(pixels)
     xyz = np.empty((count, 3), np.float32)

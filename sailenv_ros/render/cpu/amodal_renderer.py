@@ -9,11 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame.lens_rays import depth_shares
+from sailenv_ros.frame.lens_rays import depth_shares, tells_depth
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.native.drawing import AmodalDrawing
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.render.contract import require_drawable
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import native_view
 from sailenv_ros.types.camera import Camera
@@ -48,9 +47,8 @@ class AmodalRenderer:
         Raises
         ------
         InvalidRequest
-            If there is no object of that id, or nothing is drawn through this lens.
+            If there is no object of that id.
         """
-        require_drawable(camera.intrinsics)
         self._table.show(snapshot.contents)
         parts = self._table.opaque
         poses = np.ascontiguousarray(snapshot.world_from_body)
@@ -72,7 +70,7 @@ class AmodalRenderer:
         for row in results.tolist():
             height, width = (0, 0) if row[6] < 0 else (row[9] - row[7] + 1, row[8] - row[6] + 1)
             crop = depths[at : at + height * width].reshape(height, width)
-            if crop.size and not lens.is_pinhole:
+            if crop.size and not tells_depth(lens):
                 shares = depth_shares(lens)[row[7] : row[9] + 1, row[6] : row[8] + 1]
                 crop = np.where(np.isposinf(crop), crop, crop * shares)
             crops.append(crop)

@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.frame.lens_rays import tells_depth
 from sailenv_ros.native.drawing import Drawing, DrawnPoses
 from sailenv_ros.native.library import native_library
 from sailenv_ros.native.render_types import PART, VIEW, record
@@ -257,5 +258,6 @@ def native_view(
         width=columns.stop - columns.start,
         height=rows.stop - rows.start,
         smooth_edges=smooth,
-        **({} if lens.is_pinhole else lens_tables(lens, smooth)),
+        parallel=lens.is_parallel,
+        **({} if tells_depth(lens) else lens_tables(lens, smooth)),
     )

@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import unit_rays
+from sailenv_ros.frame.lens_rays import tells_depth, unit_rays
 from sailenv_ros.native.picture_kernels import AmbientSettings, find_ambient_visibility
 from sailenv_ros.types.camera import CameraIntrinsics
 
@@ -96,9 +96,15 @@ def ambient_visibility(
         nothing was hit.
     """
     settings = kernel_settings(intrinsics, strength, radius_m)
-    rays = None if intrinsics.is_pinhole else _halved_rays(intrinsics)
     return find_ambient_visibility(
-        surface, baked, intrinsics.lens_record, settings, PATTERN, rays=rays, threads=threads
+        surface,
+        baked,
+        intrinsics.lens_record,
+        settings,
+        PATTERN,
+        rays=None if tells_depth(intrinsics) else _halved_rays(intrinsics),
+        parallel=intrinsics.is_parallel,
+        threads=threads,
     )
 
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import bent_lenses, depth_shares, reach_view
+from sailenv_ros.frame.lens_rays import bent_lenses, depth_shares, reach_view, tells_depth
 from sailenv_ros.frame.motion.rigid_motion import (
     OCCLUSION_TOLERANCE,
     ObservedPoses,
@@ -55,7 +55,7 @@ def annotate(
     ----------
     surface : (H, W, 2) float32
         Depth along the optical axis [m], ``inf`` where nothing was hit, and the instance id;
-        through a lens other than a pin-hole the distance along the ray.
+        through a lens that bends straight lines the distance along the ray.
     snapshot, previous, camera
         As `RenderBackend.render` takes them. `previous.depth` must be there for ``occlusion``.
     views : frozenset of str
@@ -80,23 +80,26 @@ def annotate(
         arrays[name] = np.empty(VIEWS[name].shape(height, width), VIEWS[name].dtype)
     if wanted - {"depth", "category"} or wide:
         arrays.setdefault("instance", np.empty((height, width), np.uint16))
-    if not lens.is_pinhole:
+    straight = tells_depth(lens)
+    if not straight:
         arrays.setdefault("range", np.empty((height, width), np.float32))
-    made = ("depth", "category", "instance", *(() if lens.is_pinhole else ("range",)))
+    made = ("depth", "category", "instance", *(() if straight else ("range",)))
     annotate_pixels(
         np.ascontiguousarray(surface),
         _NO_CATEGORIES if wide else snapshot.contents.category_of_instance,
         lens.lens_record,
         {name: arrays[name] for name in made if name in arrays},
-        along=None if lens.is_pinhole else depth_shares(lens),
+        along=None if straight else depth_shares(lens),
         threads=threads,
     )
-    if "range" in wanted and lens.is_pinhole:
+    if "range" in wanted and lens.is_parallel:
+        arrays["range"][:] = arrays["depth"]
+    elif "range" in wanted and straight:
         arrays["range"] = (arrays["depth"] * np.linalg.norm(lens.rays(), axis=-1)).astype(
             np.float32
         )
     if "lens_valid" in wanted:
-        arrays["lens_valid"][:] = True if lens.is_pinhole else ~np.isnan(depth_shares(lens))
+        arrays["lens_valid"][:] = True if straight else ~np.isnan(depth_shares(lens))
     now = _poses_of(Observation(snapshot=snapshot, camera=camera, rows=rows))
     moved = {key: arrays[view] for view, key in _MOTION_OUTPUTS.items() if view in arrays}
     if moved:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame.lens_rays import reach_view
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.render.contract import RenderedViews, require_drawable
+from sailenv_ros.render.contract import RenderedViews
 from sailenv_ros.render.picture.annotate import annotate, with_depth
 from sailenv_ros.render.picture.auto_exposure import with_exposure
 from sailenv_ros.render.picture.measured_depth import MEASURED_FROM, measured_depth
@@ -71,7 +71,6 @@ class DrawingRenderer(ABC):
         if self._closed:
             raise RenderError("the renderer was closed")
         wanted = frozenset(checked_views(views, supported=self.supported_views))
-        require_drawable(camera.intrinsics)
         drawn = wanted
         if "measured_depth" in wanted:
             drawn |= MEASURED_FROM

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import unit_rays
+from sailenv_ros.frame.lens_rays import tells_depth, unit_rays
 from sailenv_ros.render.picture.half_pixels import pixel_shares
 from sailenv_ros.render.scene.flat_mirrors import NEAR_PLANE_M, SeenMirror, Window
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -110,10 +110,14 @@ def _pixels(
 ) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
     """Return which pixels of the window show the mirror, and the cosine of the viewing angle."""
     rows, columns = mirror.window
-    rays = lens.rays(rows, columns) if lens.is_pinhole else unit_rays(lens)[rows, columns]
-    x, y, z = np.moveaxis(rays, -1, 0)
+    rays = lens.rays(rows, columns) if tells_depth(lens) else unit_rays(lens)[rows, columns]
     normal = camera.camera_from_world[:3, :3] @ mirror.normal
-    offset = float(mirror.normal @ (mirror.point - camera.world_from_camera[:3, 3]))
+    offset: Any = float(mirror.normal @ (mirror.point - camera.world_from_camera[:3, 3]))
+    if lens.is_parallel:
+        # Rays begin at x and y, and lead along the axis.
+        offset = offset - rays[..., :2] @ normal[:2]
+        rays[..., :2] = 0.0
+    x, y, z = np.moveaxis(rays, -1, 0)
     along = normal[0] * x + normal[1] * y + normal[2] * z
     length = np.sqrt(z**2 + x**2 + y**2)
     mask = surface[..., 1] == mirror.instance_id

@@ -45,6 +45,9 @@ give their mirrors the grey of what they happen to reflect."""
 NEAR_PLANE_M = 4e-3
 """Pixels this near to the mirror's plane belong to it; its frame stands out further."""
 
+PARALLEL_EYE_M = 1e6
+"""Where rays are parallel, the side that is seen of a mirror is as from so far behind."""
+
 BEHIND_M = 0.02
 """Objects that reach less far before the plane are not mirrored: walls, and the mirror."""
 
@@ -150,6 +153,8 @@ class FlatMirrors:
     ) -> SeenMirror | None:
         pose = snapshot.world_from_body[row]
         eye = camera.world_from_camera[:3, 3]
+        if camera.intrinsics.is_parallel:
+            eye = eye - PARALLEL_EYE_M * camera.world_from_camera[:3, 2]
         middle = (face.low + face.high) / 2.0
         side = 1.0 if (np.linalg.inv(pose) @ [*eye, 1.0])[face.axis] > middle[face.axis] else -1.0
         front = face.high[face.axis] if side > 0.0 else face.low[face.axis]
@@ -210,7 +215,7 @@ def _window(camera: Camera, pose: NDArray[np.float64], face: _Face, front: float
     world = points @ pose[:3, :3].T + pose[:3, 3]
     seen = world @ camera.camera_from_world[:3, :3].T + camera.camera_from_world[:3, 3]
     lens = camera.intrinsics
-    if not lens.is_pinhole:
+    if not (lens.is_pinhole or lens.is_parallel):
         return slice(0, lens.height), slice(0, lens.width)
     ahead = seen[:, 2] > lens.near_m
     if not ahead.any():

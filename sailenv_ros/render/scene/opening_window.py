@@ -62,6 +62,8 @@ class OpeningWindows:
         outside = self._outside
         if outside is None or self._shell_rows is None:
             return None
+        if camera.intrinsics.is_parallel:
+            return None  # some rays may begin outside
         eye = camera.world_from_camera[:3, 3]
         if not ((eye > outside.low_m) & (eye < outside.high_m)).all():
             return None

@@ -148,7 +148,7 @@ export class ViewPanel {
       ...pairs([
         ["position", `${head.position.map((x) => fixed(x)).join(", ")} m`],
         ["pitch, yaw", `${fixed(head.rpy_deg[1], 1)}°, ${fixed(head.rpy_deg[2], 1)}°`],
-        ["picture", `${head.width} × ${head.height}, ${fixed(head.fov_deg, 1)}° high`],
+        ["picture", `${head.width} × ${head.height}${head.fov_deg ? `, ${fixed(head.fov_deg, 1)}° high` : ""}`],
         ["frame", `${head.sequence} of ${head.agent}`],
       ]),
     );
@@ -156,10 +156,11 @@ export class ViewPanel {
 
   /** @param {FrameHead} head */
   #showLens({ lens }) {
+    const unit = lens.max_angle_deg === null ? "px/m" : "px"; // of parallel rays
     /** @type {[string, string][]} */
     const rows = [
       ["model", lens.model],
-      ["fx, fy", `${fixed(lens.fx, 3)}, ${fixed(lens.fy, 3)} px`],
+      ["fx, fy", `${fixed(lens.fx, 3)}, ${fixed(lens.fy, 3)} ${unit}`],
       ["cx, cy", `${fixed(lens.cx, 3)}, ${fixed(lens.cy, 3)} px`],
       ...lens.coefficients.map(([name, value]) => /** @type {[string, string]} */ ([name, String(value)])),
     ];

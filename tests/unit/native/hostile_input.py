@@ -26,12 +26,18 @@ from sailenv_ros.native.lens import LENS
 from sailenv_ros.native.lens_models import (
     lens_models,
     lens_reach,
+    padded_coefficients,
     project_points,
     unproject_places,
 )
 from sailenv_ros.native.library import using_instruction_set
 from sailenv_ros.native.light_maps import blur_directions, sum_texels
-from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, move_points, transform_points
+from sailenv_ros.native.motion_kernels import (
+    MOTION_OUTPUTS,
+    BentLenses,
+    move_points,
+    transform_points,
+)
 from sailenv_ros.native.picture_kernels import (
     AmbientSettings,
     find_ambient_visibility,
@@ -140,6 +146,8 @@ def drive_motion() -> None:
     rows[::5] = 65535
     motions, displacements = rng.choice(np.array(NUMBERS), (2, 4, 3, 4))
     motions[1] = 0.0
+    number = lens_models()["orthographic"].number
+    side_by_side = BentLenses(None, True, number, padded_coefficients(()), 1.0, False)
     others = [(np.full(size, 0.3, np.float32), np.zeros(size, np.uint16)) for size in SIZES[:4]]
     others += [(others[2][0], None), (None, None), (np.zeros((0, 0), np.float32), None)]
     for surface in surfaces(*SIZES, LARGEST):
@@ -152,14 +160,18 @@ def drive_motion() -> None:
         }
         for lens in (PLAIN,) if large else (PLAIN, WILD):
             for other in others[:1] if large else (*others, (depth, ids)):
-                for to in (PLAIN, WILD):
+                for to, bent in ((PLAIN, None), (WILD, None), (PLAIN, side_by_side)):
                     move_points(
                         *(depth, ids, rows, motions, displacements, lens, to, *other, np.nan),
                         found,
+                        bent=bent,
                         duration_s=-1e-30,
                         threads=THREADS[1],
                     )
-            transform_points(depth, ids, rows, motions, lens, threads=THREADS[1])
+            for parallel in (False, True):
+                transform_points(
+                    depth, ids, rows, motions, lens, parallel=parallel, threads=THREADS[1]
+                )
 
 
 def drive_rays() -> None:
@@ -194,7 +206,12 @@ def drive_ambient_visibility() -> None:
     for surface in surfaces(*SIZES, LARGEST):
         large = surface.shape[:2] == LARGEST
         for lens, settings in ((PLAIN, plain),) if large else ((PLAIN, plain), (WILD, wild)):
-            find_ambient_visibility(surface, baked, lens, settings, PATTERN, threads=THREADS[1])
+            for parallel in (False, True):
+                find_ambient_visibility(
+                    *(surface, baked, lens, settings, PATTERN),
+                    parallel=parallel,
+                    threads=THREADS[1],
+                )
 
 
 def drive_pictures() -> None:
@@ -228,8 +245,8 @@ def drive_client_views() -> None:
                 )
 
 
-def bent_lenses_of(width: int, height: int) -> list[CameraIntrinsics]:
-    """Lenses that see little more than ahead, to the side, and all around."""
+def other_lenses_of(width: int, height: int) -> list[CameraIntrinsics]:
+    """Lenses that see little more than ahead, to the side, all around, and side by side."""
     size = {"width": width, "height": height}
     fisheye = {"distortion_model": "equidistant", "distortion": (0.0,) * 4, "max_angle_deg": 95.0}
     sphere = {"fx_px": width / 6.3, "fy_px": height / 3.15}
@@ -237,6 +254,7 @@ def bent_lenses_of(width: int, height: int) -> list[CameraIntrinsics]:
         CameraIntrinsics(distortion_model="plumb_bob", distortion=(-0.2, 0.05, 0.0, 0.0), **size),
         CameraIntrinsics(fx_px=0.3 * height, fy_px=0.3 * height, **fisheye, **size),
         CameraIntrinsics(distortion_model="equirectangular", **sphere, **size),
+        CameraIntrinsics(distortion_model="orthographic", fx_px=30.0, fy_px=4e5, **size),
     ]
 
 
@@ -250,7 +268,7 @@ def drive_drawing() -> None:
                 for times in (1, 2):
                     camera = camera_at(width=width, height=height)
                     camera = replace(camera, picture=PictureSettings(supersampling=times))
-                    for lens in (camera.intrinsics, *bent_lenses_of(width, height)):
+                    for lens in (camera.intrinsics, *other_lenses_of(width, height)):
                         seen = replace(camera, intrinsics=lens)
                         past = Observation(snapshot=snapshot, camera=seen)
                         with np.errstate(all="ignore"):
@@ -347,7 +365,7 @@ def drive_alone() -> None:
             for width, height in ((8, 8), (97, 61)):
                 drawing = AmodalRenderer(threads=threads)
                 camera = camera_at(width=width, height=height)
-                for lens in (camera.intrinsics, *bent_lenses_of(width, height)):
+                for lens in (camera.intrinsics, *other_lenses_of(width, height)):
                     with np.errstate(all="ignore"):
                         drawing.draw(snapshot, replace(camera, intrinsics=lens))
                 drawing.close()

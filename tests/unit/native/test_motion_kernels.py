@@ -125,7 +125,10 @@ def test_transformed_points_are_those_of_the_definition(size: tuple[int, int]) -
 
 
 def test_a_lens_is_read_as_it_was_written() -> None:
-    """Each number from its own place: the ray of every pixel, with two focal lengths."""
+    """Each number from its own place: the ray of every pixel, with two focal lengths.
+
+    Where rays are parallel, places are those of depth 1 at any depth.
+    """
     lens = np.array([(40.0, 25.0, 3.5, 2.25, 0.05, 60.0)], LENS)
     rows = np.ones(65536, np.uint16)
     depth, ids = np.ones((6, 9), np.float32), np.zeros((6, 9), np.uint16)
@@ -134,6 +137,11 @@ def test_a_lens_is_read_as_it_was_written() -> None:
     )
     v, u = np.mgrid[:6, :9].astype(np.float64)
     expected = np.stack([(u - 3.5) / 40.0, (v - 2.25) / 25.0, np.ones_like(u)], axis=-1)
+    np.testing.assert_array_equal(found, expected.astype(np.float32))
+    found = motion_kernels.transform_points(
+        *(3.0 * depth, ids, rows, np.stack([np.eye(4)[:3]] * 2), lens), parallel=True, threads=1
+    )
+    expected[..., 2] = 3.0
     np.testing.assert_array_equal(found, expected.astype(np.float32))
 
 

@@ -287,6 +287,17 @@ ENTRIES = {
         "2:24: agents[0].fx: does not fit: fy must be above 0 [px] where the other focal length "
         "is; or both 0, got 0.0",
     ),
+    "parallel rays without a scale": (
+        "version: 1\nagents: [{name: a, distortion_model: orthographic}]\n",
+        "2:38: agents[0].distortion_model: does not fit: fx must be above 0 [px/m], since all rays "
+        "are parallel, got 0.0",
+    ),
+    "a depth sensor of parallel rays": (
+        "version: 1\nagents:\n- {name: a, distortion_model: orthographic, fx: 9, fy: 9,\n"
+        "   picture: {depth_sensor: kinect_v1}}\n",
+        "4:28: agents[0].picture.depth_sensor: is refused: it must be 'ideal' where rays are "
+        "parallel, since depth sensors look from one point, got 'kinect_v1'",
+    ),
     "a lens that folds in the picture": (
         "version: 1\nagents:\n- {name: a, distortion_model: plumb_bob, fx: 200, fy: 200,\n"
         "   distortion: [-0.5, 0, 0, 0]}\n",

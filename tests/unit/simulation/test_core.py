@@ -414,16 +414,25 @@ def test_a_picture_of_too_many_samples_changes_nothing(core: SynchronousSimulati
     assert core.info.agents == before
 
 
-def test_a_lens_that_nothing_draws_through_changes_nothing(core: SynchronousSimulation) -> None:
-    """Neither an agent nor its intrinsics: else each of its frames would fail."""
-    parallel = CameraIntrinsics(distortion_model="orthographic", fx_px=90.0, fy_px=90.0)
-    with pytest.raises(InvalidRequest, match="distortion_model must be a model whose rays meet"):
-        core.register_agent(replace(spec(rate_hz=0.0), intrinsics=parallel))
+def test_a_depth_sensor_of_parallel_rays_is_refused(core: SynchronousSimulation) -> None:
+    """From both sides; an ideal one measures depth."""
+    parallel = CameraIntrinsics(
+        width=16, height=16, distortion_model="orthographic", fx_px=9.0, fy_px=9.0
+    )
+    sensor = PictureSettings(depth_sensor="kinect_v1")
+    accepted = "depth_sensor must be 'ideal' where rays are parallel"
+    with pytest.raises(InvalidRequest, match=accepted):
+        replace(spec(rate_hz=0.0), intrinsics=parallel, picture=sensor)
     core.register_agent(spec(rate_hz=0.0))
+    core.set_picture(sensor, agent="eye")
     before = core.info.agents
-    with pytest.raises(InvalidRequest, match="distortion_model must be a model whose rays meet"):
+    with pytest.raises(InvalidRequest, match=accepted):
         core.set_intrinsics(parallel, agent="eye")
     assert core.info.agents == before
+    core.set_picture(PictureSettings(), agent="eye")
+    core.set_intrinsics(parallel, agent="eye")
+    with pytest.raises(InvalidRequest, match=accepted):
+        core.set_picture(sensor, agent="eye")
 
 
 def test_a_changed_rate_begins_on_its_own_grid(core: SynchronousSimulation) -> None:

@@ -304,22 +304,6 @@ REFUSED: list[tuple[type[SailenvError], str, Callable[[SynchronousSimulation], o
             rig(name="more", cameras={f"c{number}": RigCamera() for number in range(9)})
         ),
     ),
-    (
-        InvalidRequest,
-        "distortion_model",
-        lambda c: c.register_agent(
-            rig(
-                name="flat",
-                cameras={
-                    "eye": RigCamera(
-                        intrinsics=CameraIntrinsics(
-                            distortion_model="orthographic", fx_px=99.0, fy_px=99.0
-                        )
-                    )
-                },
-            )
-        ),
-    ),
 ]
 
 

@@ -14,7 +14,8 @@
     FIELD(const float*, pattern) /* (16, 2, TAPS) */                                     \
     FIELD(const sailenv::Lens*, lens)                                                    \
     FIELD(const float*, rays) /* (h, w, 3): rays of any length, and the surface holds */ \
-                              /* distances along them; null through a pin-hole */        \
+                              /* distances along them; else null, and it holds depths */ \
+    FIELD(int64_t, parallel)  /* 1: rays are; see `Sight` of lens.h */                   \
     FIELD(double, radius_m)                                                              \
     FIELD(double, least_reach_px) /* of the radius, in samples */                        \
     FIELD(double, reach_px)                                                              \
@@ -135,11 +136,14 @@ LANES_INLINE RayChanges ray_changes(const Samples& s, int64_t v, i8 columns) {
             rays_at(s, own + below) - rays_at(s, own + above)};
 }
 
-// Through a lens that bends lines (`BENDS`) samples lie at distances along unit rays, else at
-// depths.
-template <bool BENDS>
+// How samples see: from one point, at depths; side by side, at depths; through a lens that bends
+// lines, at distances along its rays.
+enum class Seen : int32_t { STRAIGHT, PARALLEL, BENT };
+
+template <Seen SEEN>
 void find_row(const Samples& s, const Settings& set, const float* pattern, int64_t v,
               uint8_t* out) {
+    constexpr bool BENDS = SEEN == Seen::BENT, PARALLEL = SEEN == Seen::PARALLEL;
     const float* row = s.inverse + v * s.columns;
     const float* above = v > 0 ? row - s.columns : row;
     const float* below = v + 1 < s.rows ? row + s.columns : row;
@@ -171,13 +175,14 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
         if (BENDS) rays = ray_changes(s, v, truncated(column));
         const f8 focal = BENDS ? 1.0f / sqrt8(max8(dot(rays.right, rays.right), splat(1e-20f)))
                                : splat(set.lens.fx);
-        const f8 reach = min8(set.radius_m * focal * w, splat(set.reach_px));
+        const f8 reach =
+            min8(PARALLEL ? set.radius_m * focal : set.radius_m * focal * w, splat(set.reach_px));
         const i8 active = reach >= set.least_reach_px;
         if (!any(active)) {
             memset(out + u, 255, static_cast<size_t>(count));
             continue;
         }
-        // Over a plane 1/z is linear in the picture.
+        // Over a plane 1/z is linear in the picture; where rays are parallel z is.
         f8 before, after;
         if (u > 0 && u + 9 <= s.columns) {
             before = load(row + u - 1);
@@ -193,11 +198,14 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
         const i8 at_left = lane == static_cast<int32_t>(-u);
         const i8 at_right = lane == static_cast<int32_t>(s.columns - 1 - u);
         const i8 none = lane < 0;
-        f8 a = slope(w - abs8(before), abs8(after) - w, at_left, at_right);
-        f8 b = slope(w - abs8(load_some(above + u, count)), abs8(load_some(below + u, count)) - w,
-                     v == 0 ? ~none : none, v + 1 == s.rows ? ~none : none);
-        // The plane is where (a, b, c) · point = 1.
-        f8 c, px, py, pz;
+        const auto linear = [&](f8 n) { return PARALLEL ? one / abs8(n) : abs8(n); };
+        const f8 middle = PARALLEL ? one / w : w;
+        f8 a = slope(middle - linear(before), linear(after) - middle, at_left, at_right);
+        f8 b = slope(middle - linear(load_some(above + u, count)),
+                     linear(load_some(below + u, count)) - middle, v == 0 ? ~none : none,
+                     v + 1 == s.rows ? ~none : none);
+        // The plane is where (a, b, c) · point = level.
+        f8 c, px, py, pz, level = one;
         const f8 z = one / w;
         if (BENDS) {
             // Of the plane's (a, b, c) the shares along the ray and its changes are known.
@@ -211,6 +219,14 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             px = rays.ray.x * z;
             py = rays.ray.y * z;
             pz = rays.ray.z * z;
+        } else if (PARALLEL) {
+            a = a * -set.lens.fx;
+            b = b * -set.lens.fy;
+            c = one;
+            px = set.lens.ray_x(column);
+            py = splat(y);
+            pz = z;
+            level = a * px + b * py + pz;
         } else {
             a = a * set.lens.fx;
             b = b * set.lens.fy;
@@ -241,6 +257,9 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
                 qx = there.x;
                 qy = there.y;
                 tz = there.z;
+            } else if (PARALLEL) {
+                qx = set.lens.ray_x(to_float(tu));
+                qy = set.lens.ray_y(to_float(tv));
             } else {
                 qx = set.lens.ray_x(to_float(tu)) * tz;
                 qy = set.lens.ray_y(to_float(tv)) * tz;
@@ -248,7 +267,7 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             const f8 dx = qx - px, dy = qy - py, dz = tz - pz;
             const f8 d2 = dx * dx + dy * dy + dz * dz + self_m2;
             const f8 fall = max8(one - d2 * per_r2, zero);
-            const f8 height_m = (one - (a * qx + b * qy + c * tz)) * plane_m;
+            const f8 height_m = (level - (a * qx + b * qy + c * tz)) * plane_m;
             const f8 rise = height_m / sqrt8(d2) - set.bias;
             const i8 counts = inside & ((own > zero) | (other > zero));
             hidden = hidden + select8(counts, max8(rise, zero) * fall, zero);
@@ -334,7 +353,8 @@ SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
     const Ambient& in = *given;
     const int64_t height = in.height, width = in.width, step = in.step;
     const bool narrow = in.rays != nullptr && (height < 3 || width < 3);
-    if (height < 1 || width < 1 || step < 1 || step > MOST_STEP || narrow) {
+    const bool both = in.rays != nullptr && in.parallel != 0;
+    if (height < 1 || width < 1 || step < 1 || step > MOST_STEP || narrow || both) {
         return sailenv::STATUS_INVALID_ARGUMENT;
     }
     const auto in_single = [](double x) { return static_cast<float>(x); };
@@ -363,7 +383,9 @@ SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
     dilate_tiles(own, tile_rows, tile_columns, reach, tiles.get());
     sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t v = first; v < last; v++) {
-            const auto find = in.rays == nullptr ? find_row<false> : find_row<true>;
+            const auto find = in.parallel != 0     ? find_row<Seen::PARALLEL>
+                              : in.rays == nullptr ? find_row<Seen::STRAIGHT>
+                                                   : find_row<Seen::BENT>;
             find(samples, set, in.pattern, v, raw.get() + v * columns);
         }
     });

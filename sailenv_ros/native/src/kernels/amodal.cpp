@@ -42,11 +42,13 @@ struct Rectangle {
 
 // Turns a row of inverse_depth to depths, infinite where there is nothing; counts those that are
 // not. Through a lens that has a table, whose row begins at `at`, to distances along the rays.
-int64_t set_depths(float* row, int64_t count, float least_inverse_depth, float far_m,
-                   const LensTable* lens, int64_t at) {
+int64_t set_depths(float* row, int64_t count, const Projection& canvas, float far_m, int64_t at) {
+    const LensTable* lens = canvas.table;
+    const float least_inverse_depth = canvas.least_inverse_depth;
+    const bool parallel = canvas.drawn == Drawn::PARALLEL;
     int32_t covered = 0;
     for (int64_t k = 0; k < count; k++) {
-        const float n = row[k], depth = 1.0f / n;
+        const float n = row[k], depth = parallel ? -n : 1.0f / n;
         const float z = lens == nullptr ? depth : depth * stretch(lens->x[at + k], lens->y[at + k]);
         const bool there = n > least_inverse_depth && !(z > far_m);
         row[k] = there ? z : __builtin_inff();
@@ -102,7 +104,7 @@ void draw_object(const Projection& canvas, const Scratch& shared, const Instance
     for (int32_t y = reach.y0; y <= reach.y1; y++) {
         float* row = pixels + (y - reach.y0) * stride;
         const LensTable* lens = canvas.table;
-        const int64_t covered = set_depths(row, width, canvas.least_inverse_depth, far_m, lens,
+        const int64_t covered = set_depths(row, width, canvas, far_m,
                                            lens == nullptr ? 0 : y * lens->stride + reach.x0);
         if (covered == 0) continue;
         result[0] += include_row(row, reach.x0, reach.x0, reach.x1, y, whole);

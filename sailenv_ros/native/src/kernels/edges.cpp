@@ -20,6 +20,9 @@ constexpr float SAME_INVERSE_DEPTH = 0.01f;  // as a share, within one smooth su
 // share of its inverse_depth and over the focal length: 3 degrees of bend or so, or a sharper one
 // near the pixel's rim.
 constexpr float LEAST_BEND = 0.03f;
+// Where rays are parallel, a bend is compared with a pixel's side, and depths within one smooth
+// surface differ by at most so many of these: as at a focal length of 500 px.
+constexpr float SAME_DEPTH_PX = 5.0f;
 constexpr float LEAST_HEIGHT_PX = 2.0f;  // of a triangle over the edge that ends a surface
 constexpr float WEIGHT = 1.0f / 16.0f;
 
@@ -43,13 +46,14 @@ LANES_INLINE f8 every_second(const float* p) {
 }
 
 // The plane of a triangle; `normal` has any length. 1 / depth is the ray's share along the plane's
-// normal, so its slopes are the normal.
+// normal, so its slopes are the normal; those of -depth are, where it is 1 along the axis.
 struct Plane {
     vec3 normal;
     float square;
 };
 LANES_INLINE Plane plane_of(const Shading& s, const Triangle& t) {
     vec3 normal = s.lens.direction(t.inverse_depth);
+    if (s.sight == Sight::PARALLEL) normal.z = 1.0f;
     if (s.table != nullptr) normal = s.camera_from_face[t.face] * normal;
     return {normal, dot(normal, normal)};
 }
@@ -64,7 +68,9 @@ LANES_INLINE bool are_alike(const Shading& s, const Triangle& a, const Plane& p,
                             ? a.inverse_depth[0] * x + (a.inverse_depth[1] * y + a.inverse_depth[2])
                             : dot(p.normal, ray_at(s.camera_from_face[b.face], x, y));
     const float off = other - there;
-    if (__builtin_fabsf(off) > SAME_INVERSE_DEPTH * there) return false;
+    const float most =
+        s.sight == Sight::PARALLEL ? ray_length(s.lens, SAME_DEPTH_PX) : SAME_INVERSE_DEPTH * there;
+    if (__builtin_fabsf(off) > most) return false;
     const float along = dot(p.normal, q.normal);
     return along > 0.0f && along * along >= LEAST_COSINE * LEAST_COSINE * (p.square * q.square);
 }
@@ -138,12 +144,15 @@ bool separates(const Line& line, const int32_t* surface) {
 // the surface leave less. Below 0 if none lies between the samples. Of small or thin triangles
 // others may lie between them and the surface's end. `inside` is 1 for the second surface, -1 for
 // the first one.
-float share_within(const Triangle& t, const int32_t* surface, const Middle& middle, float inside) {
+float share_within(const Shading& s, const Triangle& t, const int32_t* surface,
+                   const Middle& middle, float inside) {
     float most = -1.0f;
     // At the opposite corner an edge's function is this, if the triangle's depth varies little.
-    const float opposite =
-        (t.inverse_depth[0] * middle.x + (t.inverse_depth[1] * middle.y + t.inverse_depth[2])) /
-        t.inverse_det;
+    const float over =
+        s.sight == Sight::PARALLEL
+            ? 1.0f
+            : t.inverse_depth[0] * middle.x + (t.inverse_depth[1] * middle.y + t.inverse_depth[2]);
+    const float opposite = over / t.inverse_det;
     for (int32_t j = 0; j < 3; j++) {
         const Line line = line_at(t.edge + 3 * j, middle, inside);
         const float slope = line.a * line.a + line.b * line.b;
@@ -157,12 +166,13 @@ float share_within(const Triangle& t, const int32_t* surface, const Middle& midd
 
 // Share of a pixel that the second of two surfaces covers where a straight edge of one of them
 // ends it, or where both meet; below 0 if neither is so.
-float exact_share(const Seen* seen, const int32_t* surface, const Middle& middle) {
+float exact_share(const Shading& s, const Seen* seen, const int32_t* surface,
+                  const Middle& middle) {
     const Triangle *first = seen[0].triangle, *second = seen[1].triangle;
     for (const Triangle* t : {first, second}) {
         if (t != nullptr && t->face != middle.face) return -1.0f;
     }
-    const Line empty = {0.0f, 0.0f, -1.0f};
+    const Line empty = {0.0f, 0.0f, s.sight == Sight::PARALLEL ? -__builtin_inff() : -1.0f};
     const Line a = first == nullptr ? empty : line_at(first->inverse_depth, middle, 1.0f);
     const Line b = second == nullptr ? empty : line_at(second->inverse_depth, middle, 1.0f);
     // What is in front ends the other.
@@ -170,7 +180,7 @@ float exact_share(const Seen* seen, const int32_t* surface, const Middle& middle
     for (const bool of_second : {second_first, !second_first}) {
         const Triangle* t = of_second ? second : first;
         if (t == nullptr) continue;
-        const float share = share_within(*t, surface, middle, of_second ? 1.0f : -1.0f);
+        const float share = share_within(s, *t, surface, middle, of_second ? 1.0f : -1.0f);
         if (share >= 0.0f) return of_second ? share : 1.0f - share;
     }
     if (first == nullptr || second == nullptr) return -1.0f;
@@ -236,7 +246,7 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
         surface[number] = k;
     }
     if (count == 2) {
-        const float share = exact_share(seen, surface, middle_of(s, x, y));
+        const float share = exact_share(s, seen, surface, middle_of(s, x, y));
         if (share >= 0.0f) seen[1].weight = share;
     }
     for (int32_t k = 1; k < count; k++) {
@@ -248,7 +258,8 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
 LANES_INLINE i8 bent(const Shading& s, const float* corner, int64_t stride, int32_t x, int32_t y) {
     const float* middle = corner + stride + 1;
     const f8 own = every_second(middle);
-    f8 least = own * (ray_length(s.lens, LEAST_BEND));
+    const f8 scale = s.sight == Sight::PARALLEL ? splat(1.0f) : own;
+    f8 least = scale * (ray_length(s.lens, LEAST_BEND));
     if (s.table != nullptr) {
         const LensSteps steps = steps_at(*s.table, y, x);
         least = least * sqrt8(steps.x_right * steps.x_right + steps.y_right * steps.y_right);

@@ -5,7 +5,7 @@
 namespace sailenv {
 namespace {
 
-// A triangle's corners, as planes over depth: object normal, uv.
+// A triangle's corners, as planes over depth, or over 1 where rays are parallel: object normal, uv.
 struct Planes {
     f8 along_x, along_y, at_0;
 };
@@ -27,18 +27,17 @@ struct Base8 {
     f8 alpha;
 };
 
+// `over` is what the planes are over: 1 / over is a function with slopes `over_x` and `over_y`.
 template <class Steps>
-Base8 base_colour(const Part& part, const Planes& p, const Triangle& t, const Steps& steps,
-                  f8 depth, f8 u, f8 v, i8 wanted) {
+Base8 base_colour(const Part& part, const Planes& p, const Steps& steps, f8 over, float over_x,
+                  float over_y, f8 u, f8 v, i8 wanted) {
     const float* factor = part.colour;
     if (part.colour_map == nullptr) {
         return {splat(vec3(factor[0], factor[1], factor[2])), splat(factor[3])};
     }
     const i8 size = splat(static_cast<int32_t>(part.colour_map->log2_size));
-    const f8 ux = depth * (p.along_x[3] - u * t.inverse_depth[0]),
-             vx = depth * (p.along_x[4] - v * t.inverse_depth[0]),
-             uy = depth * (p.along_y[3] - u * t.inverse_depth[1]),
-             vy = depth * (p.along_y[4] - v * t.inverse_depth[1]);
+    const f8 ux = over * (p.along_x[3] - u * over_x), vx = over * (p.along_x[4] - v * over_x),
+             uy = over * (p.along_y[3] - u * over_y), vy = over * (p.along_y[4] - v * over_y);
     const f8 level =
         level_of_detail(to_right(steps, ux, uy), to_right(steps, vx, vy), downwards(steps, ux, uy),
                         downwards(steps, vx, vy), size, 0.0f);
@@ -54,9 +53,9 @@ Base8 base_colour(const Part& part, const Planes& p, const Triangle& t, const St
     }
     Base8 c;
     transpose4(found, c.colour.x, c.colour.y, c.colour.z, c.alpha);
-    const float over = 1.0f / 255.0f;
-    return {c.colour * vec3(factor[0] * over, factor[1] * over, factor[2] * over),
-            c.alpha * (factor[3] * over)};
+    const float per_byte = 1.0f / 255.0f;
+    return {c.colour * vec3(factor[0] * per_byte, factor[1] * per_byte, factor[2] * per_byte),
+            c.alpha * (factor[3] * per_byte)};
 }
 
 // Irradiance / pi on a surface.
@@ -79,17 +78,22 @@ Vec3x8 mirrored_light(const Light& light, const Part& part, Vec3x8 point, Vec3x8
 }
 
 // Dims what lies behind eight pixels and adds what the glass mirrors and scatters. `at` and `row`
-// are their places, `ray` leads there in the world frame.
+// are their places, `ray` leads there in the world frame from `begin`.
 template <class Row, class Steps>
 void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& p, int32_t x,
-           int32_t y, f8 at, Row row, const Steps& steps, Vec3x8 ray, f8 inverse_depth, i8 wanted) {
+           int32_t y, f8 at, Row row, const Steps& steps, Vec3x8 begin, Vec3x8 ray,
+           f8 inverse_depth, i8 wanted) {
     const Light& light = *s.light;
-    const f8 depth = 1.0f / (wanted ? inverse_depth : splat(1.0f));
+    const bool parallel = s.sight == Sight::PARALLEL;
+    const f8 depth = parallel ? -inverse_depth : 1.0f / (wanted ? inverse_depth : splat(1.0f));
+    const f8 over = parallel ? splat(1.0f) : depth;
     auto attribute = [&](int k) {
-        return (p.along_x[k] * at + (p.along_y[k] * row + p.at_0[k])) * depth;
+        return (p.along_x[k] * at + (p.along_y[k] * row + p.at_0[k])) * over;
     };
     const f8 u = attribute(3), v = attribute(4);
-    const Base8 base = base_colour(part, p, t, steps, depth, u, v, wanted);
+    const float over_x = parallel ? 0.0f : t.inverse_depth[0],
+                over_y = parallel ? 0.0f : t.inverse_depth[1];
+    const Base8 base = base_colour(part, p, steps, over, over_x, over_y, u, v, wanted);
     const Vec3x8 colour = base.colour * base.colour;
     const Vec3x8 view = ray * -inverse_length(ray);
     const float (*n)[8] = s.frames[part.instance].normal_columns;
@@ -106,7 +110,7 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     const f8 fresnel = 0.04f + 0.96f * (g2 * g2 * grazing);
     const f8 rest = 1.0f - fresnel;
     const Vec3x8 mirrored =
-        mirrored_light(light, part, s.eye + ray * depth, 2.0f * facing * normal - view);
+        mirrored_light(light, part, begin + ray * depth, 2.0f * facing * normal - view);
     const Vec3x8 around = light_around(light, part.id, normal);
     const Vec3x8 added =
         fresnel * mirrored + rest * base.alpha * colour * around + colour * part.emission;
@@ -151,8 +155,8 @@ void draw_row(const Shading& s, const Triangle& t, const Part& part, const Plane
                          (n <= projection.greatest_inverse_depth) &
                          (at < static_cast<float>(projection.width));
         if (!any(drawn)) continue;
-        const Vec3x8 ray = ray_through(s.lens, s.world_from_camera, at, row);
-        blend(s, t, part, planes, x, y, at, row, PixelSteps{}, ray, n, drawn);
+        blend(s, t, part, planes, x, y, at, row, PixelSteps{}, begin_of_ray(s, at, row),
+              ray_to(s, at, row), n, drawn);
     }
 }
 
@@ -175,7 +179,8 @@ void draw_lens_row(const Shading& s, const Triangle& t, const Part& part, const 
             (n <= projection.greatest_inverse_depth) & lies_on(lens.face + first + x, t.face);
         if (!any(drawn)) continue;
         const Vec3x8 ray = ray_at(s.world_from_face[t.face], at, down);
-        blend(s, t, part, planes, x, y, at, down, steps_at(lens, y, x), ray, n, drawn);
+        blend(s, t, part, planes, x, y, at, down, steps_at(lens, y, x), splat(s.eye), ray, n,
+              drawn);
     }
 }
 

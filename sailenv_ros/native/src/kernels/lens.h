@@ -36,6 +36,10 @@ LENS_LAW Real ray_length(const SomeLens lens, Real pixels) { return pixels / len
 #undef LENS_LAW
 #undef Number
 #ifdef __cplusplus
+// How places of a picture look: all from one point; or side by side along the axis, each from where
+// (x, y) lies [m] in the camera's plane.
+enum class Sight : int32_t { CENTRAL, PARALLEL };
+
 // How far the place of one ray moves from one lens to another [px]; exactly 0 where they are equal.
 template <class T>
 inline T refocused_u(const Lens& from, const Lens& to, T x) {

@@ -105,7 +105,7 @@ struct LensDrawing {
           stride(row_stride),
           visible(reinterpret_cast<int32_t*>(seen)),
           inverse_depth(depths) {
-        if (MASKED) masked = masked_triangle(t, part);
+        if (MASKED) masked = masked_triangle(t, part, false);
     }
 
     // Draws a rectangle of samples; `WITHIN` if they all lie within the edges.
@@ -129,8 +129,7 @@ struct LensDrawing {
                 }
                 if (!any(drawn)) continue;
                 if (MASKED) {
-                    drawn =
-                        opaque_pixels(t, masked, part, at, down, steps_at(lens, row, x), n, drawn);
+                    drawn = opaque_pixels(masked, part, at, down, steps_at(lens, row, x), n, drawn);
                 }
                 store(near_row + x, drawn ? n : before);
                 if (seen != nullptr) store(seen + x, drawn ? tag : load(seen + x));

@@ -7,15 +7,19 @@
 
 namespace sailenv {
 
-// What alpha testing needs of a triangle: planes of uv over depth.
+// What alpha testing needs of a triangle: planes of uv over depth; of uv where rays are parallel.
 struct MaskedTriangle {
     float u[3], v[3];
+    float slopes[2];  // of what the planes are over, as `inverse_depth`
+    bool parallel;
     const uint32_t* texels;
     int32_t log2_size;
 };
 
-static inline MaskedTriangle masked_triangle(const Triangle& t, const Part& part) {
+static inline MaskedTriangle masked_triangle(const Triangle& t, const Part& part, bool parallel) {
     MaskedTriangle m{};
+    m.parallel = parallel;
+    for (int k = 0; k < 2; k++) m.slopes[k] = parallel ? 0.0f : t.inverse_depth[k];
     const bool textured = part.colour_map != nullptr;
     m.texels = textured ? part.colour_map->texels : WHITE_TEXELS;
     m.log2_size = textured ? static_cast<int32_t>(part.colour_map->log2_size) : 0;
@@ -32,16 +36,14 @@ static inline MaskedTriangle masked_triangle(const Triangle& t, const Part& part
 
 // Which of eight pixels of a masked material are there.
 template <class Row, class Steps>
-static inline i8 opaque_pixels(const Triangle& t, const MaskedTriangle& m, const Part& part, f8 x,
-                               Row y, const Steps& steps, f8 inverse_depth, i8 wanted) {
-    const f8 depth = 1.0f / inverse_depth;
+static inline i8 opaque_pixels(const MaskedTriangle& m, const Part& part, f8 x, Row y,
+                               const Steps& steps, f8 inverse_depth, i8 wanted) {
+    const f8 depth = m.parallel ? splat(1.0f) : 1.0f / inverse_depth;
     const f8 u = (m.u[0] * x + (m.u[1] * y + m.u[2])) * depth;
     const f8 v = (m.v[0] * x + (m.v[1] * y + m.v[2])) * depth;
     const i8 size = splat(m.log2_size);
-    const f8 ux = depth * (m.u[0] - u * t.inverse_depth[0]),
-             vx = depth * (m.v[0] - v * t.inverse_depth[0]),
-             uy = depth * (m.u[1] - u * t.inverse_depth[1]),
-             vy = depth * (m.v[1] - v * t.inverse_depth[1]);
+    const f8 ux = depth * (m.u[0] - u * m.slopes[0]), vx = depth * (m.v[0] - v * m.slopes[0]),
+             uy = depth * (m.u[1] - u * m.slopes[1]), vy = depth * (m.v[1] - v * m.slopes[1]);
     const f8 level =
         level_of_detail(to_right(steps, ux, uy), to_right(steps, vx, vy), downwards(steps, ux, uy),
                         downwards(steps, vx, vy), size, 0.0f);

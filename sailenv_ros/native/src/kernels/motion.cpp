@@ -23,7 +23,8 @@
     FIELD(const sailenv::Lens*, to_lens)                                                  \
     FIELD(int64_t, bent)                  /* 1: a lens is no pin-hole; the next count */  \
     FIELD(const double*, from_rays)       /* (H, W, 3): unit rays, `depth` is along */    \
-                                          /* them; null through a pin-hole */             \
+                                          /* them; else null, and it is along the axis */ \
+    FIELD(int64_t, from_parallel)         /* 1: rays are; see `Sight` of lens.h */        \
     FIELD(int64_t, to_model)              /* of the other lens; below 0: a pin-hole */    \
     FIELD(const double*, to_coefficients) /* (MOST_COEFFICIENTS,) */                      \
     FIELD(double, to_limit)               /* [rad] */                                     \
@@ -58,6 +59,7 @@ SAILENV_RECORD(Motion, motion, MOTION_FIELDS)
     FIELD(const double*, transforms)                          \
     FIELD(const sailenv::Lens*, lens)                         \
     FIELD(const double*, rays) /* as `from_rays` of Motion */ \
+    FIELD(int64_t, parallel)   /* as `from_parallel` */       \
     FIELD(float*, points)      /* (H, W, 3) */
 
 SAILENV_RECORD(Transform, transform_points, TRANSFORM_FIELDS)
@@ -257,30 +259,51 @@ void transformed(const double* rows, const double* point, double shift, double* 
     }
 }
 
-// The ray of a pixel whose depth is along it.
-void ray_of(const sailenv::Lens& lens, const double* rays, int64_t at, int64_t u, int64_t v,
-            double* ray) {
-    if (rays != nullptr) {
-        for (int k = 0; k < 3; k++) ray[k] = rays[3 * at + k];
-    } else {
-        ray[0] = sailenv::ray_x(lens, static_cast<double>(u));
-        ray[1] = sailenv::ray_y(lens, static_cast<double>(v));
-        ray[2] = 1.0;
+// A picture's pixels as points.
+struct Pixels {
+    const sailenv::Lens& lens;
+    const double* rays;
+    bool parallel;
+};
+
+// Where a pixel's ray begins, in the camera's plane, and where it leads.
+void ray_of(const Pixels& in, int64_t at, int64_t u, int64_t v, double* begin, double* ray) {
+    begin[0] = begin[1] = 0.0;
+    if (in.rays != nullptr) {
+        for (int k = 0; k < 3; k++) ray[k] = in.rays[3 * at + k];
+        return;
     }
+    double* across = in.parallel ? begin : ray;
+    ray[0] = ray[1] = 0.0;
+    ray[2] = 1.0;
+    across[0] = sailenv::ray_x(in.lens, static_cast<double>(u));
+    across[1] = sailenv::ray_y(in.lens, static_cast<double>(v));
+}
+
+// The point that a pixel sees at a depth, or at a distance along its ray; its direction where that
+// is infinite.
+void point_of(const Pixels& in, int64_t at, int64_t u, int64_t v, double depth, double* point) {
+    double begin[2], ray[3];
+    ray_of(in, at, u, v, begin, ray);
+    const double reach = depth == INFINITE ? 1.0 : depth;
+    for (int k = 0; k < 3; k++) point[k] = reach * ray[k];
+    if (!in.parallel || depth == INFINITE) return;
+    point[0] = begin[0];
+    point[1] = begin[1];
 }
 
 // Where a chunk's points are in the other camera's frame; there is room for steps of eight.
 struct MovedPoints {
-    double ray[3][CHUNK + 8], at[3][CHUNK + 8], step[3][CHUNK + 8];
-    double reach[CHUNK + 8], shift[CHUNK + 8];  // see `Affine`
+    double from[3][CHUNK + 8], at[3][CHUNK + 8], step[3][CHUNK + 8];
+    double shift[CHUNK + 8];  // see `Affine`
 };
 
 // Moves the points of neighbours that move alike; steps of eight as in `move_run`.
 void move_points(const double* rows, int64_t first, int64_t end, MovedPoints& p) {
     for (int64_t k = first; k < end; k += 8) {
-        const d8 reach = vector_of(p.reach + k), shift = vector_of(p.shift + k);
-        const d8 x = reach * vector_of(p.ray[0] + k), y = reach * vector_of(p.ray[1] + k),
-                 z = reach * vector_of(p.ray[2] + k);
+        const d8 shift = vector_of(p.shift + k);
+        const d8 x = vector_of(p.from[0] + k), y = vector_of(p.from[1] + k),
+                 z = vector_of(p.from[2] + k);
         const d8 own[3] = {x, y, z};
         for (int axis = 0; axis < 3; axis++) {
             const double* r = rows + 4 * axis;
@@ -293,6 +316,7 @@ void move_points(const double* rows, int64_t first, int64_t end, MovedPoints& p)
 
 // The same as `move_run` where one of the lenses is no pin-hole. `project(point, place)` tells
 // where the other lens has a point, as a place for x and y of `Lens`; false if it does not see it.
+// It takes the `shift` of points between the two: 0 for directions.
 template <class Project>
 void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int64_t count,
                      const Project& project) {
@@ -300,19 +324,19 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
     const uint16_t* ids = in.instance + at;
     const sailenv::Lens& to = *in.to_lens;
     const double rate = 1.0 / in.duration;
+    const Pixels pixels{*in.from_lens, in.from_rays, in.from_parallel != 0};
     MovedPoints p;
     Places places;
     for (int64_t k = 0; k < count; k++) {
         const double z = in.depth[at + k];
-        double ray[3];
-        ray_of(*in.from_lens, in.from_rays, at + k, u + k, v, ray);
-        for (int axis = 0; axis < 3; axis++) p.ray[axis][k] = ray[axis];
-        p.reach[k] = z == INFINITE ? 1.0 : z;
+        double point[3];
+        point_of(pixels, at + k, u + k, v, z, point);
+        for (int axis = 0; axis < 3; axis++) p.from[axis][k] = point[axis];
         p.shift[k] = z == INFINITE ? 0.0 : 1.0;
     }
     for (int64_t k = count; k < count + 8; k++) {
-        for (int axis = 0; axis < 3; axis++) p.ray[axis][k] = 0.0;
-        p.reach[k] = p.shift[k] = 0.0;
+        for (int axis = 0; axis < 3; axis++) p.from[axis][k] = 0.0;
+        p.shift[k] = 0.0;
     }
     for (int64_t first = 0; first < count;) {
         int64_t end = first + 1;
@@ -322,12 +346,12 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
         move_points(in.motions + 12 * row, first, end, p);
         const bool has_motion = row != 0;
         for (int64_t k = first; k < end; k++) {
-            const bool known = has_motion && p.reach[k] == p.reach[k] && p.ray[2][k] == p.ray[2][k];
+            const bool known = has_motion && p.from[2][k] == p.from[2][k];
             const bool rests = in.same_lens != 0 && p.step[0][k] == 0.0 && p.step[1][k] == 0.0 &&
                                p.step[2][k] == 0.0;
             const double moved[3] = {p.at[0][k], p.at[1][k], p.at[2][k]};
             double place[2] = {0.0, 0.0};
-            const bool valid = known && (rests || project(moved, place));
+            const bool valid = known && (rests || project(moved, p.shift[k], place));
             places.known[k] = known;
             places.valid[k] = valid;
             places.u[k] = places.v[k] = 0.0;
@@ -338,7 +362,7 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
         if (wanted.scene) {
             for (int64_t k = first; k < end; k++) {
                 double point[3], step[3];
-                for (int axis = 0; axis < 3; axis++) point[axis] = p.reach[k] * p.ray[axis][k];
+                for (int axis = 0; axis < 3; axis++) point[axis] = p.from[axis][k];
                 transformed(in.displacements + 12 * row, point, 1.0, step);
                 const bool there = places.known[k] && p.shift[k] != 0.0;
                 for (int j = 0; j < 3; j++) {
@@ -360,9 +384,8 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
     if (in.valid != nullptr) memcpy(in.valid + at, places.valid, static_cast<size_t>(count));
     if (!wanted.place) return;
     for (int64_t k = 0; k < count; k++) {
-        const double x = p.at[0][k], y = p.at[1][k], z = p.at[2][k];
-        const double reach = in.to_model < 0 ? z : std::sqrt(x * x + y * y + z * z);
-        places.z_to[k] = p.shift[k] == 0.0 ? INFINITE : reach;
+        const double moved[3] = {p.at[0][k], p.at[1][k], p.at[2][k]};
+        places.z_to[k] = p.shift[k] == 0.0 ? INFINITE : project.reach(moved);
     }
     look_up(in, places, v, u, count);
 }
@@ -386,7 +409,7 @@ bool find_row(const Motion& in, int64_t group, const double* own, double shift, 
         for (int axis = 0; axis < 3; axis++) {
             point[axis] = above[axis] + share * (below[axis] - above[axis]);
         }
-        if (!project(point, place)) return false;
+        if (!project(point, shift, place)) return false;
         const double found = sailenv::pixel_v(*in.to_lens, place[1]);
         const double step = found - row;
         row = found;
@@ -402,17 +425,18 @@ void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, i
     const int64_t at = v * in.width + u;
     const sailenv::Lens& to = *in.to_lens;
     const double rate = 1.0 / in.duration;
+    const Pixels pixels{*in.from_lens, in.from_rays, in.from_parallel != 0};
     Places places;
     double row = static_cast<double>(v);  // of the neighbour, where the search begins
     for (int64_t k = 0; k < count; k++) {
         const uint16_t asked = in.row_of_instance[in.instance[at + k]];
         const int64_t group = asked < in.rows ? asked : 0;
         const double z = in.depth[at + k];
-        const double reach = z == INFINITE ? 1.0 : z, shift = z == INFINITE ? 0.0 : 1.0;
-        double seen[3], own[3], point[3] = {0.0, 0.0, 1.0}, place[2] = {0.0, 0.0};
-        ray_of(*in.from_lens, in.from_rays, at + k, u + k, v, seen);
-        const bool known = group != 0 && reach == reach && seen[2] == seen[2];
-        for (int axis = 0; axis < 3; axis++) point[axis] = seen[axis] *= reach;
+        const double shift = z == INFINITE ? 0.0 : 1.0;
+        double seen[3], own[3], point[3], place[2] = {0.0, 0.0};
+        point_of(pixels, at + k, u + k, v, z, seen);
+        const bool known = group != 0 && seen[2] == seen[2];
+        for (int axis = 0; axis < 3; axis++) point[axis] = seen[axis];
         const bool rests = in.at_rest[group] != 0;
         transformed(in.own_from_rows + 12 * (group * in.height + v), seen, shift, own);
         const bool found =
@@ -424,11 +448,7 @@ void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, i
         places.valid[k] = valid;
         places.u[k] = moved ? sailenv::pixel_u(to, place[0]) - static_cast<double>(u + k) : 0.0;
         places.v[k] = moved ? sailenv::pixel_v(to, place[1]) - static_cast<double>(v) : 0.0;
-        const double along =
-            in.to_model < 0
-                ? point[2]
-                : std::sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
-        places.z_to[k] = shift == 0.0 ? INFINITE : along;
+        places.z_to[k] = shift == 0.0 ? INFINITE : project.reach(point);
         if (in.valid != nullptr) in.valid[at + k] = valid;
         if (!wanted.flow) continue;
         float* flow = in.flow + 2 * (at + k);
@@ -437,6 +457,40 @@ void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, i
     }
     if (wanted.place) look_up(in, places, v, u, count);
 }
+
+// Where a pin-hole has points. `reach` is what its picture tells of their distance, as those of the
+// next two do.
+struct ToPinhole {
+    bool operator()(const double* point, double, double* place) const {
+        place[0] = point[0] / point[2];
+        place[1] = point[1] / point[2];
+        return point[2] > 0.0;
+    }
+    double reach(const double* point) const { return point[2]; }
+};
+
+template <class Model>
+struct ToModel {
+    const sailenv::LensLaw& law;
+
+    bool operator()(const double* point, double, double* place) const {
+        return Model::project(law, point, place);
+    }
+    double reach(const double* p) const {
+        return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+    }
+};
+
+// A direction has no place in a picture of parallel rays.
+template <class Model>
+struct ToParallel {
+    const sailenv::LensLaw& law;
+
+    bool operator()(const double* point, double shift, double* place) const {
+        return shift != 0.0 && Model::project(law, point, place);
+    }
+    double reach(const double* point) const { return point[2]; }
+};
 
 int32_t move_through_bent_lenses(int64_t threads, const Motion& in, Wanted wanted) {
     const auto move = [&](const auto& project) {
@@ -455,17 +509,18 @@ int32_t move_through_bent_lenses(int64_t threads, const Motion& in, Wanted wante
             });
     };
     if (in.to_model < 0) {
-        move([](const double* point, double* place) {
-            place[0] = point[0] / point[2];
-            place[1] = point[1] / point[2];
-            return point[2] > 0.0;
-        });
+        move(ToPinhole{});
         return sailenv::STATUS_OK;
     }
     if (in.to_coefficients == nullptr) return sailenv::STATUS_INVALID_ARGUMENT;
     const sailenv::LensLaw law = sailenv::lens_law(in.to_model, in.to_coefficients, in.to_limit);
     const bool is_model = sailenv::LensModels::choose(in.to_model, [&](auto model) {
-        move([&](const double* point, double* place) { return model.project(law, point, place); });
+        using Model = decltype(model);
+        if constexpr (sailenv::has_parallel_rays(Model::TEXT)) {
+            move(ToParallel<Model>{law});
+        } else {
+            move(ToModel<Model>{law});
+        }
     });
     return is_model ? sailenv::STATUS_OK : sailenv::STATUS_INVALID_ARGUMENT;
 }
@@ -508,6 +563,7 @@ SAILENV_KERNEL(motion)(int64_t threads, const Motion* given) {
 SAILENV_KERNEL(transform_points)(int64_t threads, const Transform* given) {
     const Transform in = *given;
     if (in.height < 0 || in.width < 0 || in.rows < 1) return sailenv::STATUS_INVALID_ARGUMENT;
+    const Pixels pixels{*in.lens, in.rays, in.parallel != 0};
     sailenv::parallel_for(threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
         for (int64_t v = begin; v < end; v++) {
             for (int64_t u = 0; u < in.width; u++) {
@@ -516,11 +572,14 @@ SAILENV_KERNEL(transform_points)(int64_t threads, const Transform* given) {
                 const uint16_t asked = in.row_of_instance[in.instance[at]];
                 const uint16_t row = asked < in.rows ? asked : uint16_t{0};
                 const bool there = row != 0 && z - z == 0.0;
-                double ray[3];
-                ray_of(*in.lens, in.rays, at, u, v, ray);
+                double origin[2], ray[3];
+                ray_of(pixels, at, u, v, origin, ray);
                 for (int64_t axis = 0; axis < 3; axis++) {
                     const double* r = in.transforms + 12 * row + 4 * axis;
-                    const double place = z * (r[0] * ray[0] + r[1] * ray[1] + r[2] * ray[2]) + r[3];
+                    const double shift =
+                        in.parallel != 0 ? r[0] * origin[0] + r[1] * origin[1] + r[3] : r[3];
+                    const double place =
+                        z * (r[0] * ray[0] + r[1] * ray[1] + r[2] * ray[2]) + shift;
                     in.points[3 * at + axis] = there ? static_cast<float>(place) : NOT_A_NUMBER;
                 }
             }

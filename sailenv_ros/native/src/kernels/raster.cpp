@@ -15,6 +15,7 @@ namespace {
 constexpr int32_t CLUSTER_TRIANGLES = 32;  // at most; see render/clusters.py
 constexpr int64_t SEGMENT_CLUSTERS = 48;
 constexpr float LEAST_DEPTH_M = 1e-3f;  // corners nearer than that have no bounds on the screen
+constexpr double PARALLEL_EYE_M = 1e9;  // far enough that all is seen in one direction
 
 LANES_INLINE float smaller(float a, float b) { return a < b ? a : b; }
 LANES_INLINE float larger(float a, float b) { return a > b ? a : b; }
@@ -97,7 +98,7 @@ void set_sides(InstanceFrame& frame, const Projection& p, const FaceBounds* face
         wide[1] = across + face->high[0];
         wide[2] = down - face->low[1];
         wide[3] = down + face->high[1];
-    } else if (p.perspective) {
+    } else if (p.drawn != Drawn::SHADOW) {
         // A hundredth of the farther side's width beyond what is drawn.
         wide[0] = -ray_x(p.lens, pixel_of(p, p.x0) - 0.5);
         wide[1] = ray_x(p.lens, pixel_of(p, p.x1) + 0.5);
@@ -112,8 +113,10 @@ void set_sides(InstanceFrame& frame, const Projection& p, const FaceBounds* face
         double* plane = frame.sides + 4 * s;
         for (int j = 0; j < 4; j++) {
             const double at = sign * m[4 * (s / 2) + j];
-            if (p.perspective) {
+            if (p.drawn == Drawn::PERSPECTIVE) {
                 plane[j] = wide[s] * m[8 + j] + at;
+            } else if (p.drawn == Drawn::PARALLEL) {
+                plane[j] = at + (j == 3 ? wide[s] : 0.0);
             } else {
                 const double limit = s % 2 ? (s / 2 ? p.height : p.width) : 1.0;
                 plane[j] = at + (j == 3 ? limit : 0.0);
@@ -125,13 +128,15 @@ void set_sides(InstanceFrame& frame, const Projection& p, const FaceBounds* face
     }
 }
 
-// Where the eye is in the object's frame: what is no number culls nothing.
-void set_eye(InstanceFrame& frame) {
+// Where the eye is in the object's frame: what is no number culls nothing. Where rays are parallel
+// it is that far behind the camera.
+void set_eye(InstanceFrame& frame, const Projection& p) {
     const double* m = frame.eye_from_object;
+    const double behind = p.drawn == Drawn::PARALLEL ? PARALLEL_EYE_M : 0.0;
     const double a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[6], g = m[8], h = m[9],
                  i = m[10];
     const double det = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
-    const double x = -m[3] / det, y = -m[7] / det, z = -m[11] / det;
+    const double x = -m[3] / det, y = -m[7] / det, z = -(m[11] + behind) / det;
     frame.eye[0] = (e * i - f * h) * x + (c * h - b * i) * y + (b * f - c * e) * z;
     frame.eye[1] = (f * g - d * i) * x + (a * i - c * g) * y + (c * d - a * f) * z;
     frame.eye[2] = (d * h - e * g) * x + (b * g - a * h) * y + (a * e - b * d) * z;
@@ -161,8 +166,9 @@ struct ClusterRows {
 // Edge functions and planes, in double precision. Two triangles that share an edge get the same
 // numbers for it with opposite signs, so no pixel between them is lost or drawn twice. Nothing is
 // snapped to a grid.
-template <bool PERSPECTIVE>
+template <Drawn DRAWN>
 void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
+    constexpr bool PERSPECTIVE = DRAWN == Drawn::PERSPECTIVE;
     const Lens lens = p.lens;
     for (int32_t k = 0; k < count; k += 4) {
         const d4 one = {1.0, 1.0, 1.0, 1.0};
@@ -202,6 +208,11 @@ void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
             store_double(r.inverse_depth[0] + k, (a0 + a1 + a2) * inverse);
             store_double(r.inverse_depth[1] + k, (b0 + b1 + b2) * inverse);
             store_double(r.inverse_depth[2] + k, (c0 + c1 + c2) * inverse);
+        } else if (DRAWN == Drawn::PARALLEL) {
+            const d4 nearer = -inverse;
+            store_double(r.inverse_depth[0] + k, (a0 * ad + a1 * bd + a2 * cd) * nearer);
+            store_double(r.inverse_depth[1] + k, (b0 * ad + b1 * bd + b2 * cd) * nearer);
+            store_double(r.inverse_depth[2] + k, (c0 * ad + c1 * bd + c2 * cd) * nearer);
         } else {
             const d4 na = 1.0 - ad, nb = 1.0 - bd, nc = 1.0 - cd;
             const d4 nx = (a0 * na + a1 * nb + a2 * nc) * inverse;
@@ -218,8 +229,9 @@ void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
 }
 
 // Which samples a triangle can reach: their bounds; x0 > x1 if there are none.
-template <bool PERSPECTIVE>
+template <Drawn DRAWN>
 void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
+    constexpr bool PERSPECTIVE = DRAWN == Drawn::PERSPECTIVE;
     const float left = static_cast<float>(p.x0), right = static_cast<float>(p.x1);
     const float top = static_cast<float>(p.y0), bottom = static_cast<float>(p.y1);
     const FastLens lens(p.fine ? of_half_pixels(p.lens) : p.lens);
@@ -231,6 +243,9 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
             depth[j] = load(r.corner[3 * j + 2] + k);
             if (PERSPECTIVE) {
                 project(lens, depth[j], x[j], y[j]);
+            } else if (DRAWN == Drawn::PARALLEL) {
+                x[j] = lens.cx + lens.fx * x[j];
+                y[j] = lens.cy + lens.fy * y[j];
             }
         }
         f8 x0 = min8(x[0], min8(x[1], x[2])) - 0.01f, x1 = max8(x[0], max8(x[1], x[2])) + 0.01f;
@@ -245,6 +260,8 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
             y0 = crosses ? splat(top) : y0;
             x1 = crosses ? splat(right) : x1;
             y1 = crosses ? splat(bottom) : y1;
+        } else if (DRAWN == Drawn::PARALLEL) {
+            behind = max8(depth[0], max8(depth[1], depth[2])) <= 0.0f;
         }
         // Rounded inwards to samples: upwards is the negative floor of the negative.
         x0 = -floor8(-clamp8(x0, left, 1e5f));
@@ -308,7 +325,7 @@ int32_t keep_reaching(ClusterRows& r, int32_t count) {
     return kept;
 }
 
-template <bool PERSPECTIVE>
+template <Drawn DRAWN>
 int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corners_at,
                        const TriangleSet& set, const Projection& p, ClusterRows& r, Triangle* out) {
     const Cluster& cluster = part.clusters[seen.cluster];
@@ -326,7 +343,7 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
             r.vertex[j][k] = static_cast<int32_t>(vertices[3 * k + j]);
         }
     }
-    const bool two_sided = !PERSPECTIVE || (part.flags & PART_DOUBLE_SIDED);
+    const bool two_sided = DRAWN == Drawn::SHADOW || (part.flags & PART_DOUBLE_SIDED);
     const bool front = seen.facing != FACING_BACK;
     const bool back = seen.facing == FACING_BACK || (seen.facing == FACING_BOTH && two_sided);
     if (p.table != nullptr) {
@@ -335,11 +352,11 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
         set_lens_bounds(r, count, p, p.table->faces[seen.face], front, back);
     } else {
         pad(r, count);
-        set_bounds<PERSPECTIVE>(r, (count + 7) & ~7, p);
+        set_bounds<DRAWN>(r, (count + 7) & ~7, p);
     }
     const int32_t reaching = keep_reaching(r, count);
     pad(r, reaching);
-    set_edges_up<PERSPECTIVE>(r, (reaching + 3) & ~3, p);
+    set_edges_up<DRAWN>(r, (reaching + 3) & ~3, p);
     int64_t made = 0;
     for (int32_t k = 0; k < reaching; k++) {
         const bool faces = r.back[k] == 0 ? front : r.back[k] == 1 && back;
@@ -352,7 +369,7 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
         t.part = seen.part;
         t.back = static_cast<int8_t>(r.back[k]);
         t.face = static_cast<int8_t>(seen.face);
-        t.masked = PERSPECTIVE && (part.flags & PART_MASKED) ? 1 : 0;
+        t.masked = DRAWN != Drawn::SHADOW && (part.flags & PART_MASKED) ? 1 : 0;
         t.x0 = static_cast<int16_t>(r.x0[k]);
         t.x1 = static_cast<int16_t>(r.x1[k]);
         t.y0 = static_cast<int16_t>(r.y0[k]);
@@ -437,7 +454,7 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
     }
     const i8 tag = splat(static_cast<int32_t>(number));
     MaskedTriangle masked;
-    if (MASKED) masked = masked_triangle(t, part);
+    if (MASKED) masked = masked_triangle(t, part, p.drawn == Drawn::PARALLEL);
     for (int32_t row = y0; row <= y1; row++) {
         const float y = FINE ? 0.5f * static_cast<float>(row - 1) : static_cast<float>(row);
         const float c0 = t.edge[1] * y + t.edge[2], c1 = t.edge[4] * y + t.edge[5],
@@ -466,7 +483,7 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
                        (n <= p.greatest_inverse_depth);
             if (MASKED) {
                 if (!any(drawn)) continue;
-                drawn = opaque_pixels(t, masked, part, at, y, PixelSteps{}, n, drawn);
+                drawn = opaque_pixels(masked, part, at, y, PixelSteps{}, n, drawn);
             }
             store(near_row + x, drawn ? n : before);
             if (seen_row != nullptr) {
@@ -481,7 +498,8 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
 
 Projection projection_of(const View& view) {
     Projection p{};
-    p.perspective = true;
+    const bool parallel = view.parallel != 0;
+    p.drawn = parallel ? Drawn::PARALLEL : Drawn::PERSPECTIVE;
     p.lens = view.lens;
     p.table = view.table;
     if (p.table != nullptr) {
@@ -493,8 +511,12 @@ Projection projection_of(const View& view) {
     p.x1 = p.width - 1;
     p.y1 = p.height - 1;
     // A little less: annotations compare depths with the far distance exactly.
-    p.least_inverse_depth = std::nextafter(static_cast<float>(1.0 / view.lens.far_m), 0.0f);
-    p.greatest_inverse_depth = 3e38f;
+    const float far = static_cast<float>(view.lens.far_m);
+    p.least_inverse_depth = parallel
+                                ? std::nextafter(-far, -2.0f * far)
+                                : std::nextafter(static_cast<float>(1.0 / view.lens.far_m), 0.0f);
+    // Parallel rays begin at the camera's plane.
+    p.greatest_inverse_depth = parallel ? -1.1754944e-38f : 3e38f;
     return p;
 }
 
@@ -532,7 +554,7 @@ void set_frames(Scratch& scratch, const Instances& instances, const double* eye_
             } else {
                 set_sides(frame, projection, is_clipped ? &clipped_bounds : &bounds);
             }
-            set_eye(frame);
+            set_eye(frame, projection);
             // Normals go by the inverse transpose: the rotation with the reciprocal scale.
             for (int j = 0; j < 3; j++) {
                 for (int i = 0; i < 8; i++) {
@@ -576,7 +598,8 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
             const InstanceFrame& frame = frames[part.instance];
             const double centre[3] = {part.sphere[0], part.sphere[1], part.sphere[2]};
             if (is_beyond(centre, part.sphere[3], frame.sides)) continue;
-            const bool two_sided = !projection.perspective || (part.flags & PART_DOUBLE_SIDED);
+            const bool two_sided =
+                projection.drawn == Drawn::SHADOW || (part.flags & PART_DOUBLE_SIDED);
             const int passes = back_first && two_sided ? 2 : 1;
             for (int pass = 0; pass < passes; pass++) {
                 const Facing facing = passes == 1 ? FACING_BOTH
@@ -652,9 +675,11 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
             Triangle* next = set.triangles.data() + number;
             const Projection& onto =
                 part.instance + 1 == instances.clipped ? part_of_it : projection;
-            const int64_t made = projection.perspective
-                                     ? set_cluster_up<true>(seen, part, at, set, onto, rows, next)
-                                     : set_cluster_up<false>(seen, part, at, set, onto, rows, next);
+            const auto set_up =
+                projection.drawn == Drawn::PERSPECTIVE ? set_cluster_up<Drawn::PERSPECTIVE>
+                : projection.drawn == Drawn::PARALLEL  ? set_cluster_up<Drawn::PARALLEL>
+                                                       : set_cluster_up<Drawn::SHADOW>;
+            const int64_t made = set_up(seen, part, at, set, onto, rows, next);
             if (projection.fine) std::fill_n(set.part_of.begin() + number, made, seen.part);
             segment.triangle_count += made;
         }

@@ -14,9 +14,10 @@ namespace sailenv {
 
 // A triangle on the screen. `edge` holds a, b, c of three functions a x + b y + c of the pixel
 // (integers are pixel centres): each is 0 on the edge opposite to its corner, positive inside, and
-// together with `inverse_det` they are the corners' weights over depth. `inverse_depth` is such a
-// function too: 1 / depth in perspective, 1 - depth in a shadow map. `x0` to `y1` are the first and
-// last samples that it can cover.
+// together with `inverse_det` they are the corners' weights over depth; where rays are parallel the
+// weights. `inverse_depth` is such a function too, the greater the nearer: 1 / depth in
+// perspective, -depth where rays are parallel, 1 - depth in a shadow map. `x0` to `y1` are the
+// first and last samples that it can cover.
 struct Triangle {
     float edge[9];
     float inverse_depth[3];
@@ -49,10 +50,13 @@ struct InstanceFrame {
     alignas(32) float normal_columns[3][8];  // world normal from object normal; beyond are 0
 };
 
+// What samples are drawn of: a picture in perspective, one of parallel rays, or a shadow map.
+enum class Drawn : int32_t { PERSPECTIVE, PARALLEL, SHADOW };
+
 // Onto the picture's pixels, in which triangles have straight edges; or onto the faces of a cube,
 // in which they have, for a lens that bends lines.
 struct Projection {
-    bool perspective;
+    Drawn drawn;
     Lens lens;               // 1, 1, 0, 0 in a shadow map and on a face
     const LensTable* table;  // of a lens that bends lines; else null
     int32_t width, height;   // pixels
@@ -114,7 +118,7 @@ void set_frames(Scratch& scratch, const Instances& instances, const double* eye_
                 const Projection& projection);
 
 // Makes the triangles that may be seen of some parts. `orders` lists numbers of parts in the order
-// in which they are wanted; in perspective with `back_first`, each two-sided part is listed twice:
+// in which they are wanted; in pictures with `back_first`, each two-sided part is listed twice:
 // its back and then its front.
 void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& parts,
                     const Instances& instances, const Projection& projection, const int32_t* order,

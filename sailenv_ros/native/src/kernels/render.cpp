@@ -110,7 +110,8 @@ bool is_drawable(const View& view, const Light* light, const Outputs& outputs) {
         view.width > 0 && view.height > 0 && view.width <= 16384 && view.height <= 16384;
     const bool lacks_samples = view.table != nullptr && view.fine_table == nullptr &&
                                view.smooth_edges != 0 && outputs.radiance != nullptr;
-    return sized && !lacks_samples && (outputs.radiance == nullptr || light != nullptr);
+    const bool one_law = view.parallel == 0 || view.table == nullptr;
+    return sized && one_law && !lacks_samples && (outputs.radiance == nullptr || light != nullptr);
 }
 
 void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
@@ -154,6 +155,7 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
     shading.lens = FastLens(view.lens);
     shading.world_from_camera = turn_of(view.world_from_camera);
     shading.camera_from_world = turn_of(view.camera_from_world);
+    shading.sight = view.parallel != 0 ? Sight::PARALLEL : Sight::CENTRAL;
     shading.table = view.table;
     shading.fine_table = view.fine_table;
     if (view.table != nullptr) set_face_turns(shading, view);
@@ -234,6 +236,7 @@ SAILENV_KERNEL(draw_shadow_map)
     try {
         Scratch& scratch = **handle;
         Projection projection{};
+        projection.drawn = Drawn::SHADOW;
         projection.lens.fx = projection.lens.fy = 1.0;
         projection.width = projection.height = static_cast<int32_t>(size);
         projection.x1 = projection.y1 = projection.width - 1;

@@ -138,6 +138,7 @@ struct View {
     Lens lens;
     int64_t width, height;
     int64_t smooth_edges;  // 1: edges of surfaces are smoothed, see kernels/edges.cpp
+    int64_t parallel;      // 1: rays are, see `Sight`
     // Of a lens that bends straight lines: of the pixels' centres, and of samples half a pixel
     // apart where edges are smoothed. Else null.
     const LensTable *table, *fine_table;

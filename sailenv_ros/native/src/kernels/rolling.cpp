@@ -210,13 +210,15 @@ void set_rows(const Band& band, int64_t instance, const float* corner, int32_t& 
     }
     const double distance = std::sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
     const double reach = band.reach(instance, distance);
-    const double nearest = at[2] - reach;
+    const bool parallel = band.in.view->parallel != 0;
+    const double nearest = parallel ? 1.0 : at[2] - reach;
     if (!(nearest > LEAST_DEPTH_M)) return;
     const Lens& lens = band.in.view->lens;
-    const double slope = at[1] / at[2];
+    const double slope = parallel ? at[1] : at[1] / at[2];
     const double row = slope * lens.fy + lens.cy;
     // Besides, smooth edges look half a row away.
-    const double margin = lens.fy * reach * (1.0 + std::abs(slope)) / nearest + 1.0;
+    const double spread = parallel ? 1.0 : 1.0 + std::abs(slope);
+    const double margin = lens.fy * reach * spread / nearest + 1.0;
     if (!(row - margin > -EVERY && row + margin < EVERY)) return;
     low = static_cast<int32_t>(std::floor(row - margin));
     high = static_cast<int32_t>(std::ceil(row + margin));
@@ -280,7 +282,8 @@ void keep_seen(const Band& band, const DrawList& list, int32_t first_row, int32_
                std::vector<BandPart>& kept) {
     const Instances& all = *band.in.instances;
     BandScene& scene = band.scene;
-    const bool straight = band.in.view->table == nullptr;
+    // Where rays are parallel, what a turn lets them see of a cluster is not known.
+    const bool has_eye = band.in.view->table == nullptr && band.in.view->parallel == 0;
     for (int64_t k = 0; k < list.count; k++) {
         const Part& part = list.parts[k];
         if (all.drawn != nullptr && !all.drawn[part.instance]) continue;
@@ -294,7 +297,7 @@ void keep_seen(const Band& band, const DrawList& list, int32_t first_row, int32_
         for (int32_t c = 0; c < part.cluster_count; c++) {
             const Cluster& cluster = part.clusters[c];
             if (band.is_out(part.instance, cluster.centre, cluster.radius, moves)) continue;
-            if (!two_sided && straight) {
+            if (!two_sided && has_eye) {
                 // To the cluster the eye moves as the cluster does to the eye.
                 Cluster wide = cluster;
                 wide.radius += moves;

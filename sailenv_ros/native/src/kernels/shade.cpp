@@ -12,8 +12,8 @@ namespace {
 void set_rays(const Shading& s, Chunk& c) {
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 x = load(c.at_x + i), y = load(c.at_y + i);
-        c.ray.set(i, s.table == nullptr ? ray_through(s.lens, s.world_from_camera, x, y)
-                                        : rays_of_faces(s, x, y, load(c.face + i)));
+        c.ray.set(i,
+                  s.table == nullptr ? ray_to(s, x, y) : rays_of_faces(s, x, y, load(c.face + i)));
         const Vec3x8 normal = c.normal.at(i);
         c.normal.set(i, normal * inverse_length(normal));
     }
@@ -35,7 +35,8 @@ void write_gathered_surface(const Shading& s, const Chunk& c) {
 
 void place_points(const Shading& s, Chunk& c) {
     for (int32_t i = 0; i < c.padded; i += 8) {
-        c.point.set(i, s.eye + c.ray.at(i) * load(c.depth + i));
+        const Vec3x8 begin = begin_of_ray(s, load(c.at_x + i), load(c.at_y + i));
+        c.point.set(i, begin + c.ray.at(i) * load(c.depth + i));
         store(c.roughness + i, clamp8(load(c.roughness + i), LEAST_ROUGHNESS, 1.0f));
         store(c.metallic + i, clamp8(load(c.metallic + i), 0.0f, 1.0f));
         const Vec3x8 root = c.base.at(i);

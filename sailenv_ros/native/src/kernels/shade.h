@@ -18,12 +18,27 @@ struct Shading {
     const Outputs* outputs;
     int64_t width, stride;
     const uint32_t* visible;
-    FastLens lens;                        // 1, 1, 0, 0 where there is a table
+    FastLens lens;  // 1, 1, 0, 0 where there is a table
+    Sight sight;
     const LensTable *table, *fine_table;  // null through a lens that leaves lines straight
     Mat3 world_from_face[CUBE_FACES], camera_from_face[CUBE_FACES];  // where there is a table
     Mat3 world_from_camera, camera_from_world;
     vec3 eye;
 };
+
+// Where the ray of a place in the picture begins, in the world frame, and where it leads to; at
+// depth 1 the point is the sum of both. Through a lens that leaves lines straight.
+template <class A, class B>
+LANES_INLINE Vec3x8 begin_of_ray(const Shading& s, A x, B y) {
+    if (s.sight == Sight::CENTRAL) return splat(s.eye);
+    return s.world_from_camera.column(0) * (s.lens.ray_x(x) + splat(0.0f)) +
+           s.world_from_camera.column(1) * (s.lens.ray_y(y) + splat(0.0f)) + s.eye;
+}
+template <class A, class B>
+LANES_INLINE Vec3x8 ray_to(const Shading& s, A x, B y) {
+    if (s.sight == Sight::PARALLEL) return splat(s.world_from_camera.column(2));
+    return ray_through(s.lens, s.world_from_camera, x, y);
+}
 
 // The sky's light on a surface whose normal has the z `up`: irradiance / pi.
 LANES_INLINE Vec3x8 light_of_sky(const Light& l, f8 up) {

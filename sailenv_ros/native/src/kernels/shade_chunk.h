@@ -29,10 +29,12 @@ struct Chunk {
     alignas(32) int32_t face[CHUNK];
     alignas(32) float x_right[CHUNK], y_right[CHUNK], x_down[CHUNK], y_down[CHUNK];
     bool hit, missed, coloured, detailed;  // what there is among the pixels
+    bool parallel;                         // changes of uv are not over depth, below
     alignas(32) float depth[CHUNK];
     Vectors normal;  // world frame
     alignas(32) float u[CHUNK], v[CHUNK], light_u[CHUNK], light_v[CHUNK];
-    // Changes of uv / depth and of 1 / depth from pixel to pixel.
+    // Changes of uv / depth and of 1 / depth from pixel to pixel; of uv and of -depth where rays
+    // are parallel.
     alignas(32) float ux[CHUNK], vx[CHUNK], uy[CHUNK], vy[CHUNK];
     alignas(32) float inverse_depth_x[CHUNK], inverse_depth_y[CHUNK];
     Vectors base;  // base colour: its square root before `place_points`, linear after it

@@ -5,7 +5,8 @@
 namespace sailenv {
 namespace {
 
-// What the corners of a triangle know, over its depth: planes of a row of the picture.
+// What the corners of a triangle know, over its depth: planes of a row of the picture. Where rays
+// are parallel they are over 1, and the last one is the depth.
 struct RowPlanes {
     f8 slope, offset, moved;  // normal (world frame), uv, light uv, 1; `moved` is added at the end
     f8 look, maps;            // see `Chunk`: material, and how uv change from pixel to pixel
@@ -71,9 +72,12 @@ LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float y, RowPl
         const f8 object_y = a0 * (t.edge[1] * q) + a1 * (t.edge[4] * q) + a2 * (t.edge[7] * q);
         *down = object_y * kept + n0 * object_y[0] + n1 * object_y[1] + n2 * object_y[2];
     }
-    const f8 depth_lane = {0, 0, 0, 0, 0, 0, 0, 1};
+    const bool parallel = s.sight == Sight::PARALLEL;
+    const float inverse_depth_0 = t.inverse_depth[1] * y + t.inverse_depth[2];
+    const f8 depth_lane = {0, 0, 0, 0, 0, 0, 0, parallel ? -inverse_depth_0 : 1.0f};
     r.offset =
         object_0 * kept + n0 * object_0[0] + n1 * object_0[1] + n2 * object_0[2] + depth_lane;
+    if (parallel) r.slope[7] = -t.inverse_depth[0];
     r.look = f8{part.colour[0], part.colour[1], part.colour[2], t.inverse_depth[0],
                 part.roughness, part.metallic,  part.emission,  t.inverse_depth[1]};
     r.coloured = part.colour_map != nullptr;
@@ -92,8 +96,8 @@ LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float y, RowPl
                     part.flags & PART_FINISH_MAP ? 1.0f : 0.0f,
                     part.flags & PART_NORMAL_MAP ? 1.0f : 0.0f};
     }
-    r.inverse_depth_slope = t.inverse_depth[0];
-    r.inverse_depth_offset = t.inverse_depth[1] * y + t.inverse_depth[2];
+    r.inverse_depth_slope = parallel ? 0.0f : t.inverse_depth[0];
+    r.inverse_depth_offset = parallel ? 1.0f : inverse_depth_0;
     r.id = part.id;
 }
 
@@ -301,6 +305,13 @@ void write_surface(const Shading& s, int32_t x, int32_t y, int32_t count) {
             continue;
         }
         const float offset = t.inverse_depth[1] * static_cast<float>(y) + t.inverse_depth[2];
+        if (s.sight == Sight::PARALLEL) {
+            for (; i < end; i++) {
+                surface[2 * i] = -(t.inverse_depth[0] * static_cast<float>(x + i) + offset);
+                surface[2 * i + 1] = id;
+            }
+            continue;
+        }
         for (; i < end; i++) {
             surface[2 * i] = 1.0f / (t.inverse_depth[0] * static_cast<float>(x + i) + offset);
             surface[2 * i + 1] = id;
@@ -310,6 +321,7 @@ void write_surface(const Shading& s, int32_t x, int32_t y, int32_t count) {
 
 void gather(const Shading& s, Chunk& c) {
     const float y = static_cast<float>(c.y);
+    c.parallel = s.sight == Sight::PARALLEL;
     for (int32_t i = 0; i < c.padded; i += 8) {
         store(c.at_x + i, counting() + static_cast<float>(c.x + i));
         store(c.at_y + i, splat(y));
@@ -320,6 +332,7 @@ void gather(const Shading& s, Chunk& c) {
 void gather_through_lens(const Shading& s, Chunk& c) {
     const LensTable& lens = *s.table;
     const int64_t first = c.y * lens.stride + c.x;
+    c.parallel = false;
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 x = load(lens.x + first + i), y = load(lens.y + first + i);
         const i8 seen = x == x;
@@ -345,6 +358,7 @@ void gather_fragments(const Shading& s, const Fragment* fragments, Chunk& c) {
         }
     }
     c.hit = c.missed = c.coloured = c.detailed = false;
+    c.parallel = s.sight == Sight::PARALLEL;
     for (int32_t i = 0; i < c.padded; i++) {
         const Fragment& f = fragments[i < c.count ? i : 0];
         c.at_x[i] = f.x;

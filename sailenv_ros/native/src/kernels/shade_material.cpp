@@ -16,6 +16,7 @@ struct Slopes {
 };
 
 LANES_INLINE Slopes uv_slopes(const Chunk& c, int32_t i) {
+    if (c.parallel) return {load(c.ux + i), load(c.vx + i), load(c.uy + i), load(c.vy + i)};
     const f8 depth = load(c.depth + i), u = load(c.u + i), v = load(c.v + i);
     const f8 nx = load(c.inverse_depth_x + i), ny = load(c.inverse_depth_y + i);
     return {depth * (load(c.ux + i) - u * nx), depth * (load(c.vx + i) - v * nx),
@@ -140,8 +141,8 @@ void apply_detail_maps(const Shading& s, Chunk& c) {
         store(c.metallic + i, load(c.metallic + i) * (1.0f - finish + metal * with_finish));
         if (!any(relief > 0.0f)) continue;
         const Slopes d = uv_slopes(c, i);
-        // How the point moves from pixel to pixel, over its depth.
-        const f8 depth = load(c.depth + i);
+        // How the point moves from pixel to pixel, over its depth; where rays are parallel over 1.
+        const f8 depth = c.parallel ? splat(1.0f) : load(c.depth + i);
         const f8 zx = -depth * load(c.inverse_depth_x + i),
                  zy = -depth * load(c.inverse_depth_y + i);
         const Vec3x8 ray = c.ray.at(i), normal = c.normal.at(i);

@@ -27,6 +27,8 @@ struct ModelText {
     const char *name, *coefficients, *counts, *odd, *rays, *accepted;
 };
 
+constexpr bool has_parallel_rays(const ModelText& text) { return text.rays[0] == 'p'; }
+
 // How far a law goes from the axis [rad]: at all, and straight up and down. It folds where it would
 // go on if the distance in the plane did not shrink again.
 struct Reach {
