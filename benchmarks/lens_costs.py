@@ -1,12 +1,12 @@
-"""Time pictures through lenses that bend straight lines beside those of a pin-hole.
+"""Time pictures through lenses that are no pin-holes beside those of one.
 
     python benchmarks/lens_costs.py [--scene NAME] [--size WxH] [--frames N] [--threads N]
                                     [--no-smooth-edges]
 
 The five views of an agent from one place, by the native renderer, each lens in turn, so that what
 disturbs the machine disturbs all; the medians of wall and of processor time are compared, and what
-each stage takes. The pin-hole shows 60 degrees from top to bottom, the others what they are made
-for.
+each stage takes. The pin-hole shows 60 degrees from top to bottom, parallel rays as much around the
+middle, the others what they are made for.
 """
 
 from __future__ import annotations
@@ -36,6 +36,7 @@ def lenses(width: int, height: int) -> Mapping[str, CameraIntrinsics]:
     """Return the lenses that are compared; the first one is the pin-hole."""
     pinhole = CameraIntrinsics(width=width, height=height)
     focal, wide = pinhole.fy, 0.5 * height / np.radians(95.0)
+    distance_m = float(np.linalg.norm(np.subtract(EYE, TARGET)))
     return {
         "pin-hole": pinhole,
         "plumb_bob": CameraIntrinsics(
@@ -61,6 +62,13 @@ def lenses(width: int, height: int) -> Mapping[str, CameraIntrinsics]:
             distortion_model="equirectangular",
             fx_px=width / (2.0 * np.pi),
             fy_px=height / np.pi,
+        ),
+        "orthographic": CameraIntrinsics(
+            width=width,
+            height=height,
+            distortion_model="orthographic",
+            fx_px=focal / distance_m,
+            fy_px=focal / distance_m,
         ),
     }
 
