@@ -38,6 +38,7 @@ class LeRobotEnv(gymnasium.Wrapper[dict[str, Any], Any, Any, Any]):
         told: Any = env.observation_space
         views = env.get_wrapper_attr("eye").views
         if "rgb" not in views:
+            env.close()  # nobody else has it
             raise UnknownName("view", "rgb", views)
         self._told = spaces.Dict({name: told[name] for name in told if name not in views})
         inside: dict[str, spaces.Space[Any]] = {"pixels": told["rgb"]}

@@ -31,6 +31,7 @@ def test_the_public_names_are_these() -> None:
         "Simulation",
         "__version__",
         "load_calibration",
+        "load_rig",
         "load_scene",
         "look_at",
         "show",
