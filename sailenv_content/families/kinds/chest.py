@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.contents import plates, stores
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, FrontKind, door, drawer
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import carcass, four_legs, shelf
+from sailenv_content.families.materials import WOODS, metal, paint, wood
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
-from sailenv_content.families.stuff import WOODS, metal, paint, wood
-from sailenv_content.families.workbench import Workbench
 
 __all__ = ["FAMILY"]
 
 BOARD_M = 0.018
 
 
-def _body(b: Workbench, v: Values) -> tuple[Box, Box]:
+def _body(b: PieceBuilder, v: Values) -> tuple[Box, Box]:
     """Add legs and a carcass; return its hollow and the room of its fronts."""
     front = v.depth / 2 - 0.022
     low = (-v.depth / 2 + 0.006, -v.width / 2 + BOARD_M, v.legs + BOARD_M)
@@ -29,7 +29,13 @@ def _body(b: Workbench, v: Values) -> tuple[Box, Box]:
 
 
 def _drawer(
-    b: Workbench, v: Values, name: str, panel: Box, inside: Box, *, front: FrontKind | None = None
+    b: PieceBuilder,
+    v: Values,
+    name: str,
+    panel: Box,
+    inside: Box,
+    *,
+    front: FrontKind | None = None,
 ) -> None:
     """Add a drawer of the chest's materials; its front is the chest's unless told otherwise."""
     drawer(
@@ -46,7 +52,7 @@ def _drawer(
     )
 
 
-def _outer_doors(b: Workbench, v: Values, right: Box, left: Box) -> None:
+def _outer_doors(b: PieceBuilder, v: Values, right: Box, left: Box) -> None:
     """Add two doors with their hinges at the outer sides."""
     for side, panel in (("right", right), ("left", left)):
         door(
@@ -61,7 +67,7 @@ def _outer_doors(b: Workbench, v: Values, right: Box, left: Box) -> None:
         )
 
 
-def _drawers(b: Workbench, v: Values) -> None:
+def _drawers(b: PieceBuilder, v: Values) -> None:
     """Fill the front with rows of drawers."""
     inside, fronts = _body(b, v)
     number = 0
@@ -77,7 +83,7 @@ def _drawers(b: Workbench, v: Values) -> None:
         )
 
 
-def _doors(b: Workbench, v: Values) -> None:
+def _doors(b: PieceBuilder, v: Values) -> None:
     """Make doors at the sides, drawers between them, plates and stores inside."""
     inside, fronts = _body(b, v)
     rooms = inside.columns([1.0, 1.0, 1.0], BOARD_M)
@@ -99,7 +105,7 @@ def _doors(b: Workbench, v: Values) -> None:
         _drawer(b, v, f"drawer {number + 1}", panel, inside, front="flat")
 
 
-def _tv(b: Workbench, v: Values) -> None:
+def _tv(b: PieceBuilder, v: Values) -> None:
     """Make a long low unit: an open middle with a shelf, a door or a drawer at each side."""
     inside, fronts = _body(b, v)
     rooms = inside.columns([1.0, 1.2, 1.0], BOARD_M)
@@ -133,7 +139,7 @@ _SCHEMES = (
 )
 """Materials of sides, fronts and top that go together."""
 
-_STUFF = {
+_MATERIALS = {
     "scheme": Choice(*_SCHEMES),
     "inner": wood("birch"),
     "frame": Choice(*WOODS, metal("#232326")),
@@ -151,7 +157,7 @@ FAMILY = Family(
         "dresser": Style(
             _drawers,
             {
-                **_STUFF,
+                **_MATERIALS,
                 "depth": Span(0.44, 0.52),
                 "width": Span(0.8, 1.3),
                 "height": Span(0.75, 1.05),
@@ -164,7 +170,7 @@ FAMILY = Family(
         "nightstand": Style(
             _drawers,
             {
-                **_STUFF,
+                **_MATERIALS,
                 "depth": Span(0.36, 0.42),
                 "width": Span(0.4, 0.52),
                 "height": Span(0.48, 0.6),
@@ -178,7 +184,7 @@ FAMILY = Family(
         "sideboard": Style(
             _doors,
             {
-                **_STUFF,
+                **_MATERIALS,
                 "depth": Span(0.4, 0.48),
                 "width": Span(1.4, 1.9),
                 "height": Span(0.7, 0.9),
@@ -190,7 +196,7 @@ FAMILY = Family(
         "tv": Style(
             _tv,
             {
-                **_STUFF,
+                **_MATERIALS,
                 "depth": Span(0.38, 0.45),
                 "width": Span(1.3, 1.9),
                 "height": Span(0.42, 0.55),

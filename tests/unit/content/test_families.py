@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sailenv_content.families.builder import PieceBuilder, Unfit
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.making import MAX_DRAWS, Piece, make_piece
+from sailenv_content.families.materials import wood
 from sailenv_content.families.names import PieceName
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
 from sailenv_content.families.registry import family_named, family_names
 from sailenv_content.families.source import FamilySource
-from sailenv_content.families.stuff import wood
-from sailenv_content.families.workbench import Unfit, Workbench
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.errors import AssetError, SceneError, UnknownName
@@ -277,7 +277,7 @@ def family_of(style: Style) -> Family:
     )
 
 
-def block(b: Workbench, v: Values) -> None:
+def block(b: PieceBuilder, v: Values) -> None:
     """Make a block; a hole may leave nothing of it."""
     if v.hole > v.size / 2:
         raise Unfit("the hole leaves nothing of it")

@@ -1,4 +1,4 @@
-"""Where a piece is put together: forms with their stuff, labelled parts, and what opens.
+"""Where a piece is put together: forms with their material, labelled parts, and what opens.
 
 A form collides as itself: a board as its box, others as their hulls. Mass and centre follow from
 the volumes and densities.
@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from sailenv_content.families.materials import PieceMaterial
 from sailenv_content.families.shaping import Floats, board, placed
-from sailenv_content.families.stuff import Stuff
 from sailenv_ros.assets.hulls import convex_hull
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import BoxShape, CollisionShape, Mesh
 
-__all__ = ["Joint", "Unfit", "Work", "Workbench"]
+__all__ = ["Joint", "Unfit", "Component", "PieceBuilder"]
 
 Vector3 = tuple[float, float, float]
 Collides = Literal["hull", "box", "none"]
@@ -46,7 +46,7 @@ class Joint:
 
 
 @dataclass(slots=True, kw_only=True)
-class Work:
+class Component:
     """All that belongs to one part of a piece, or to its body.
 
     Attributes
@@ -56,7 +56,7 @@ class Work:
     category : str
     joint : Joint or None
         Of what opens.
-    meshes : list of (Stuff, Mesh)
+    meshes : list of (PieceMaterial, Mesh)
     shapes : list of CollisionShape
     mass_kg : float
     moment : (3,) float64
@@ -66,35 +66,35 @@ class Work:
     name: str
     category: str
     joint: Joint | None = None
-    meshes: list[tuple[Stuff, Mesh]] = field(default_factory=list)
+    meshes: list[tuple[PieceMaterial, Mesh]] = field(default_factory=list)
     shapes: list[CollisionShape] = field(default_factory=list)
     mass_kg: float = 0.0
     moment: Floats = field(default_factory=lambda: np.zeros(3))
 
 
-class Workbench:
+class PieceBuilder:
     """Puts one piece together.
 
     Attributes
     ----------
     rng : numpy.random.Generator
         For all that is random beside the parameters.
-    works : list of Work
+    components : list of Component
         The body first.
     keypoints : dict of str to (3,) tuple of float
     """
 
     def __init__(self, rng: np.random.Generator) -> None:
         self.rng = rng
-        self.works = [Work(name="", category="")]
+        self.components = [Component(name="", category="")]
         self.keypoints: dict[str, Vector3] = {}
-        self._at = self.works[0]
+        self._at = self.components[0]
 
     # -- forms -----------------------------------------------------------------------------
 
     def box(
         self,
-        stuff: Stuff,
+        material: PieceMaterial,
         size: ArrayLike,
         at: ArrayLike,
         *,
@@ -110,10 +110,12 @@ class Workbench:
             raise Unfit(f"a board of {sides.tolist()} m")
         u, v = self.rng.uniform(0.0, 1.0, 2).tolist()
         x, y, z = sides.tolist()
-        mesh = board((x, y, z), bevel=bevel, tile_m=stuff.tile_m, shift=(u, v), top=top, lean=lean)
+        mesh = board(
+            (x, y, z), bevel=bevel, tile_m=material.tile_m, shift=(u, v), top=top, lean=lean
+        )
         mesh = placed(mesh, at, turn)
         plain = top == (1.0, 1.0) and lean == (0.0, 0.0)
-        self._add(stuff, mesh, float(sides.prod()))
+        self._add(material, mesh, float(sides.prod()))
         if collides and plain:
             self._at.shapes.append(_box_shape(sides, at, turn))
         elif collides:
@@ -121,7 +123,7 @@ class Workbench:
 
     def form(
         self,
-        stuff: Stuff,
+        material: PieceMaterial,
         mesh: Mesh,
         at: ArrayLike = (0.0, 0.0, 0.0),
         *,
@@ -131,7 +133,7 @@ class Workbench:
     ) -> None:
         """Add any form; `volume` [m³] is that of its triangles unless it is given."""
         mesh = placed(mesh, at, turn)
-        self._add(stuff, mesh, _volume(mesh) if volume is None else volume)
+        self._add(material, mesh, _volume(mesh) if volume is None else volume)
         if collides == "hull":
             self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
         elif collides == "box":
@@ -147,7 +149,7 @@ class Workbench:
     @contextmanager
     def part(self, name: str, category: str) -> Iterator[None]:
         """Label all that is added inside as a part; inside a part, as a part of that."""
-        with self._working(Work(name=self._named(name), category=category)):
+        with self._adding_to(Component(name=self._named(name), category=category)):
             yield
 
     @contextmanager
@@ -173,7 +175,7 @@ class Workbench:
             effort=40.0,
             damping=damping,
         )
-        with self._working(Work(name=self._named(name), category=category, joint=joint)):
+        with self._adding_to(Component(name=self._named(name), category=category, joint=joint)):
             yield
 
     @contextmanager
@@ -197,13 +199,13 @@ class Workbench:
             effort=80.0,
             damping=damping,
         )
-        with self._working(Work(name=self._named(name), category=category, joint=joint)):
+        with self._adding_to(Component(name=self._named(name), category=category, joint=joint)):
             yield
 
     @contextmanager
-    def _working(self, work: Work) -> Iterator[None]:
-        before, self._at = self._at, work
-        self.works.append(work)
+    def _adding_to(self, component: Component) -> Iterator[None]:
+        before, self._at = self._at, component
+        self.components.append(component)
         try:
             yield
         finally:
@@ -211,7 +213,7 @@ class Workbench:
 
     def _named(self, name: str) -> str:
         outer = self._at.name
-        taken = {work.name for work in self.works}
+        taken = {component.name for component in self.components}
         whole = f"{outer}{PART_MARK}{name}" if outer else name
         number, free = 1, whole
         while free in taken:
@@ -233,13 +235,13 @@ class Workbench:
         """Return a number between two."""
         return float(self.rng.uniform(least, most))
 
-    def _add(self, stuff: Stuff, mesh: Mesh, volume: float) -> None:
-        work = self._at
-        work.meshes.append((stuff, mesh))
-        mass = max(volume, 1e-7) * stuff.density
+    def _add(self, material: PieceMaterial, mesh: Mesh, volume: float) -> None:
+        component = self._at
+        component.meshes.append((material, mesh))
+        mass = max(volume, 1e-7) * material.density
         middle = (mesh.positions.min(axis=0) + mesh.positions.max(axis=0)).astype(np.float64) / 2.0
-        work.mass_kg += mass
-        work.moment = work.moment + mass * middle
+        component.mass_kg += mass
+        component.moment = component.moment + mass * middle
 
 
 def _box_shape(size: NDArray[Any], at: ArrayLike, turn: ArrayLike) -> BoxShape:

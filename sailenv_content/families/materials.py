@@ -1,6 +1,6 @@
 """Materials of pieces: woods, metals, fabrics, glass, with density and finish.
 
-A name and a colour in, a `Stuff` out. Fine structures are the catalogue's own patterns.
+A name and a colour in, a `PieceMaterial` out. Fine structures are the catalogue's own patterns.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ __all__ = [
     "FABRICS",
     "LEATHERS",
     "WOODS",
-    "Stuff",
+    "PieceMaterial",
     "colour_of",
     "fabric",
     "glass",
@@ -33,19 +33,19 @@ Vector3 = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Stuff:
+class PieceMaterial:
     """A material, the size of what its textures show, and its density.
 
     Attributes
     ----------
-    material : Material
+    surface : Material
     tile_m : float
         Edge of what the texture shows [m].
     density : float
         Mean, hollows of a real piece counted in [kg/m³].
     """
 
-    material: Material
+    surface: Material
     tile_m: float
     density: float
 
@@ -82,7 +82,9 @@ def colour_of(text: str) -> Vector3:
     return red, green, blue
 
 
-def _patterned(name: str, pattern: str, colour: str, roughness: float, density: float) -> Stuff:
+def _patterned(
+    name: str, pattern: str, colour: str, roughness: float, density: float
+) -> PieceMaterial:
     maps = pattern_maps(PATTERNS[pattern])
     made = Material(
         name=name,
@@ -91,51 +93,51 @@ def _patterned(name: str, pattern: str, colour: str, roughness: float, density: 
         base_colour_texture=maps["base_colour_texture"],
         normal_texture=maps.get("normal_texture"),
     )
-    return Stuff(made, PATTERNS[pattern].tile_m, density)
+    return PieceMaterial(made, PATTERNS[pattern].tile_m, density)
 
 
 @lru_cache(maxsize=256)
-def wood(species: str) -> Stuff:
+def wood(species: str) -> PieceMaterial:
     """Return a wood with its grain along u."""
     return _patterned(species, "grain", _WOODS[species], 0.48, 600.0)
 
 
 @lru_cache(maxsize=256)
-def paint(colour: str, roughness: float = 0.42, density: float = 600.0) -> Stuff:
+def paint(colour: str, roughness: float = 0.42, density: float = 600.0) -> PieceMaterial:
     """Return a lacquer on board, or plastic."""
     made = Material(
         name=f"paint {colour}", base_colour=(*colour_of(colour), 1.0), roughness=roughness
     )
-    return Stuff(made, 1.0, density)
+    return PieceMaterial(made, 1.0, density)
 
 
 @lru_cache(maxsize=256)
-def metal(kind: str) -> Stuff:
+def metal(kind: str) -> PieceMaterial:
     """Return a metal by name, or one that is powder-coated in ``#rrggbb``."""
     if kind.startswith("#"):
         made = Material(name=f"coated {kind}", base_colour=(*colour_of(kind), 1.0), roughness=0.5)
-        return Stuff(made, 1.0, 2500.0)
+        return PieceMaterial(made, 1.0, 2500.0)
     colour, roughness = _METALS[kind]
     made = Material(
         name=kind, base_colour=(*colour_of(colour), 1.0), metallic=1.0, roughness=roughness
     )
-    return Stuff(made, 1.0, 2500.0)
+    return PieceMaterial(made, 1.0, 2500.0)
 
 
 @lru_cache(maxsize=256)
-def fabric(colour: str) -> Stuff:
+def fabric(colour: str) -> PieceMaterial:
     """Return upholstery."""
     return _patterned(f"fabric {colour}", "weave", colour, 0.95, 70.0)
 
 
 @lru_cache(maxsize=256)
-def leather(colour: str) -> Stuff:
+def leather(colour: str) -> PieceMaterial:
     """Return leather over foam."""
     return _patterned(f"leather {colour}", "leather", colour, 0.5, 80.0)
 
 
 @lru_cache(maxsize=256)
-def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> Stuff:
+def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> PieceMaterial:
     """Return clear or tinted glass."""
     made = Material(
         name=f"glass {colour}",
@@ -143,11 +145,11 @@ def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> Stuff:
         roughness=0.06,
         alpha="blend",
     )
-    return Stuff(made, 1.0, 2500.0)
+    return PieceMaterial(made, 1.0, 2500.0)
 
 
 @lru_cache(maxsize=256)
-def glow(colour: str, strength: float) -> Stuff:
+def glow(colour: str, strength: float) -> PieceMaterial:
     """Return a shade or a bulb that glows by the light of its lamp."""
     red, green, blue = colour_of(colour)
     made = Material(
@@ -157,7 +159,7 @@ def glow(colour: str, strength: float) -> Stuff:
         glow=(strength * red, strength * green, strength * blue),
         double_sided=True,
     )
-    return Stuff(made, 1.0, 300.0)
+    return PieceMaterial(made, 1.0, 300.0)
 
 
 WOODS = tuple(wood(n) for n in ("oak", "walnut", "beech", "teak", "ash", "black oak", "cherry"))
