@@ -89,6 +89,7 @@ class PieceBuilder:
         self.components = [Component(name="", category="")]
         self.keypoints: dict[str, Vector3] = {}
         self._at = self.components[0]
+        self._frame = _Frame()
 
     # -- forms -----------------------------------------------------------------------------
 
@@ -113,11 +114,11 @@ class PieceBuilder:
         mesh = board(
             (x, y, z), bevel=bevel, tile_m=material.tile_m, shift=(u, v), top=top, lean=lean
         )
-        mesh = placed(mesh, at, turn)
+        mesh = self._frame.mesh(placed(mesh, at, turn))
         plain = top == (1.0, 1.0) and lean == (0.0, 0.0)
         self._add(material, mesh, float(sides.prod()))
         if collides and plain:
-            self._at.shapes.append(_box_shape(sides, at, turn))
+            self.collide(sides, at, turn)
         elif collides:
             self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
 
@@ -132,17 +133,28 @@ class PieceBuilder:
         volume: float | None = None,
     ) -> None:
         """Add any form; `volume` [m³] is that of its triangles unless it is given."""
-        mesh = placed(mesh, at, turn)
+        mesh = self._frame.mesh(placed(mesh, at, turn))
         self._add(material, mesh, _volume(mesh) if volume is None else volume)
         if collides == "hull":
             self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
         elif collides == "box":
             low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
-            self._at.shapes.append(_box_shape(high - low, (low + high) / 2.0, (0.0, 0.0, 0.0)))
+            self._at.shapes.append(_box_shape(high - low, (low + high) / 2.0))
 
     def collide(self, size: ArrayLike, at: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> None:
         """Add a box that collides and is not drawn: for what is drawn without collision."""
-        self._at.shapes.append(_box_shape(np.asarray(size, np.float64), at, turn))
+        sides, place = np.asarray(size, np.float64), np.asarray(at, np.float64)
+        self._at.shapes.append(self._frame.box_shape(sides, place, np.asarray(turn, np.float64)))
+
+    @contextmanager
+    def frame(self, at: ArrayLike = (0.0, 0.0, 0.0), yaw_deg: float = 0.0) -> Iterator[None]:
+        """Place all that is added inside: turned about z [deg], then shifted [m]."""
+        before = self._frame
+        self._frame = _Frame(before.point(at), before.yaw_deg + yaw_deg)
+        try:
+            yield
+        finally:
+            self._frame = before
 
     # -- parts -----------------------------------------------------------------------------
 
@@ -165,10 +177,10 @@ class PieceBuilder:
         damping: float = 0.3,
     ) -> Iterator[None]:
         """Add a part that turns by up to an angle about an axis through a point."""
-        x, y, z = np.asarray(at, np.float64).tolist()
+        x, y, z = self._frame.point(at).tolist()
         joint = Joint(
             type="hinge",
-            axis=axis,
+            axis=self._frame.direction(axis),
             origin_m=(x, y, z),
             limits=(0.0, math.radians(opens_deg)),
             friction=friction,
@@ -192,7 +204,7 @@ class PieceBuilder:
         """Add a part that slides by up to a length [m]."""
         joint = Joint(
             type="slide",
-            axis=axis,
+            axis=self._frame.direction(axis),
             origin_m=(0.0, 0.0, 0.0),
             limits=(0.0, round(by, 4)),
             friction=friction,
@@ -244,7 +256,48 @@ class PieceBuilder:
         component.moment = component.moment + mass * middle
 
 
-def _box_shape(size: NDArray[Any], at: ArrayLike, turn: ArrayLike) -> BoxShape:
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """Where forms are put: turned about z, then shifted."""
+
+    at: Floats = field(default_factory=lambda: np.zeros(3))
+    yaw_deg: float = 0.0
+
+    def mesh(self, mesh: Mesh) -> Mesh:
+        """Return a mesh in the piece's own frame."""
+        if not self.yaw_deg and not self.at.any():
+            return mesh
+        return placed(mesh, self.at, (0.0, 0.0, self.yaw_deg))
+
+    def point(self, at: ArrayLike) -> Floats:
+        """Return a point in the piece's own frame [m]."""
+        return np.asarray(self._turned(np.asarray(at, np.float64)) + self.at)
+
+    def direction(self, axis: Vector3) -> Vector3:
+        """Return a unit vector in the piece's own frame."""
+        x, y, z = self._turned(np.asarray(axis, np.float64)).tolist()
+        return x, y, z
+
+    def box_shape(self, size: Floats, at: Floats, turn: Floats) -> BoxShape:
+        """Return a box that collides in the piece's own frame."""
+        if not self.yaw_deg:
+            return _box_shape(size, at + self.at, turn)
+        whole = Rotation.from_euler("z", self.yaw_deg, degrees=True) * Rotation.from_euler(
+            "xyz", turn, degrees=True
+        )
+        return _box_shape(size, self.point(at), whole.as_euler("xyz", degrees=True))
+
+    def _turned(self, vector: Floats) -> Floats:
+        quarters = self.yaw_deg / 90.0
+        if quarters == round(quarters):  # exactly along the axes
+            for _ in range(int(quarters) % 4):
+                vector = np.array([-vector[1], vector[0], vector[2]])
+            return vector
+        turn = Rotation.from_euler("z", self.yaw_deg, degrees=True)
+        return np.asarray(turn.apply(vector), np.float64)
+
+
+def _box_shape(size: NDArray[Any], at: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> BoxShape:
     hx, hy, hz = (np.asarray(size, np.float64) / 2.0).tolist()
     x, y, z = np.asarray(at, np.float64).tolist()
     angles = np.asarray(turn, np.float64)

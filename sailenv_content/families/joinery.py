@@ -1,6 +1,7 @@
 """Constructions of several families: legs, carcasses, shelves.
 
-A `PieceBuilder` and measures in [m] in; forms are added to the part that it is at. The front is at +x.
+A `PieceBuilder` and measures in [m] in; forms are added to the part that it is at. The front is
+at +x.
 """
 
 from __future__ import annotations
