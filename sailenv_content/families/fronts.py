@@ -16,7 +16,16 @@ from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import PieceMaterial, glass, metal
 from sailenv_content.families.shaping import swept, turned
 
-__all__ = ["CLEARANCE_M", "door", "drawer", "front_panel", "handle"]
+__all__ = [
+    "CLEARANCE_M",
+    "FrontKind",
+    "door",
+    "drawer",
+    "flap",
+    "front_panel",
+    "handle",
+    "sliding_doors",
+]
 
 CLEARANCE_M = 0.003
 """Gap around what opens [m]."""
@@ -157,6 +166,64 @@ def door(
             upright=True,
             length=length,
         )
+
+
+def flap(
+    b: PieceBuilder,
+    name: str,
+    material: PieceMaterial,
+    kind: FrontKind,
+    panel: Box,
+    *,
+    category: str = "door",
+    hinge: Literal["bottom", "top"] = "bottom",
+    handle_kind: str = "bar",
+    metal_: PieceMaterial | None = None,
+    opens_deg: float = 88.0,
+    length: float = 0.0,
+) -> None:
+    """Add a front that folds down or up, with a handle near its free edge, `length` [m] long."""
+    down = hinge == "bottom"
+    at = (panel.high[0], panel.middle[1], panel.low[2] if down else panel.high[2])
+    axis = (0.0, 1.0 if down else -1.0, 0.0)
+    with b.hinge(name, category, at=at, axis=axis, opens_deg=opens_deg):
+        front_panel(b, material, kind, panel)
+        edge = min(0.05, 0.2 * panel.size[2])
+        z = panel.high[2] - edge if down else panel.low[2] + edge
+        handle(
+            b,
+            metal_ or metal("steel"),
+            handle_kind,
+            panel.high[0],
+            panel.middle[1],
+            z,
+            length=length or min(0.16, 0.5 * panel.size[1]),
+        )
+
+
+def sliding_doors(
+    b: PieceBuilder,
+    opening: Box,
+    material: PieceMaterial,
+    kind: FrontKind,
+    metal_: PieceMaterial,
+    *,
+    grip_z: float,
+    grip_m: float = 0.22,
+    pane: PieceMaterial | None = None,
+) -> None:
+    """Add two doors that slide past each other before an opening, the right one in front."""
+    middle = float(opening.middle[1])
+    for sign, name, x in ((1.0, "left door", 0.0), (-1.0, "right door", 0.026)):
+        low = (opening.low[0] + x, middle if sign > 0 else opening.low[1], opening.low[2])
+        high = (low[0] + 0.022, opening.high[1] if sign > 0 else middle + 0.02, opening.high[2])
+        panel = Box(low, high)
+        by = float(opening.size[1]) / 2.0 - 0.05
+        with b.slide(name, "door", by=by, axis=(0.0, -sign, 0.0), friction=6.0):
+            front_panel(b, material, kind, panel, pane=pane)
+            edge = panel.low[1] + 0.03 if sign < 0 else panel.high[1] - 0.03
+            grip = (0.002, 0.02, grip_m)
+            b.box(metal_, grip, (panel.high[0], edge, grip_z), collides=False)
 
 
 def drawer(

@@ -7,7 +7,7 @@ from itertools import pairwise
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.contents import folded, hung_clothes
 from sailenv_content.families.family import Family, Style
-from sailenv_content.families.fronts import CLEARANCE_M, door, drawer, front_panel
+from sailenv_content.families.fronts import CLEARANCE_M, door, drawer, sliding_doors
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import carcass, four_legs, shelf
 from sailenv_content.families.materials import PieceMaterial, metal, paint, wood
@@ -97,15 +97,9 @@ def _sliding(b: PieceBuilder, v: Values) -> None:
     b.box(v.material, (v.depth - 0.06, v.width - 0.03, 0.05), (-0.02, 0.0, 0.025))
     rooms = 2 if v.width < 2.0 else 3
     _furnished(b, v.inner, inside, rooms)
-    half = v.width / 2.0
-    for sign, name, x in ((1.0, "left door", 0.0), (-1.0, "right door", 0.026)):
-        low = (inside.high[0] + 0.003 + x, 0.0 if sign > 0 else -half, 0.055)
-        panel = Box(low, (low[0] + 0.022, half if sign > 0 else 0.02, v.height - 0.004))
-        by = half - 0.05
-        with b.slide(name, "door", by=by, axis=(0.0, -sign, 0.0), friction=6.0):
-            front_panel(b, v.door, v.front, panel)
-            edge = panel.low[1] + 0.03 if sign < 0 else panel.high[1] - 0.03
-            b.box(v.metal, (0.002, 0.02, 0.22), (panel.high[0], edge, 1.0), collides=False)
+    half, x = v.width / 2.0, inside.high[0] + 0.003
+    opening = Box((x, -half, 0.055), (x + 0.05, half, v.height - 0.004))
+    sliding_doors(b, opening, v.door, v.front, v.metal, grip_z=1.0)
     for z in (0.052, v.height - 0.002):
         b.box(
             v.metal,

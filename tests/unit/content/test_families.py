@@ -137,8 +137,13 @@ OPENING = (
     "wardrobe~sliding:1",
     "wardrobe~classic:5",
     "chest~dresser:0",
-    "chest~sideboard:1",
-    "chest~tv:2",
+    "chest~apothecary:0",
+    "sideboard~doors:1",
+    "sideboard~sliding:1",
+    "sideboard~hutch:1",
+    "tv_unit~flaps:0",
+    "tv_unit~wall:2",
+    "nightstand~door:1",
     "bookcase~cabinet:1",
     "bed~drawers:0",
 )
@@ -198,7 +203,7 @@ def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
 
 def test_a_piece_that_moves_freely_keeps_itself_shut() -> None:
     """In one body, whose parts are labelled all the same; nothing is lost of its mass."""
-    name = "chest~nightstand:2"
+    name = "nightstand~drawers:1"
     with closing(world_of({"name": "it", "asset": name})) as world:
         assert [body.placement.name for body in world.bodies] == ["it"]
         assert world.body(1).mass_kg == pytest.approx(LIBRARY.get(name).mass_kg)
@@ -209,7 +214,7 @@ def test_a_piece_that_moves_freely_keeps_itself_shut() -> None:
 
 def test_an_entry_of_its_own_takes_the_place_of_what_opens() -> None:
     """So a scene that was saved is built as it was."""
-    name = "chest~nightstand:2"
+    name = "nightstand~drawers:1"
     joint = {
         "type": "slide",
         "parent": "it",
@@ -231,7 +236,7 @@ def test_spawned_pieces_open_and_go_with_what_opens(tmp_path: Path) -> None:
     empty = tmp_path / "empty.yaml"
     empty.write_text("version: 1\n")
     with Simulation(empty, mode="lockstep", backend="native") as simulation:
-        piece = simulation.spawn_object("chest~sideboard:1", (1, 0, 0), object_name="it")
+        piece = simulation.spawn_object("sideboard~doors:1", (1, 0, 0), object_name="it")
         simulation.set_joint_position("it left door", 1.0)
         saved = tmp_path / "saved.yaml"
         saved.write_text(simulation.scene_text())
@@ -250,7 +255,7 @@ def test_spawned_pieces_open_and_go_with_what_opens(tmp_path: Path) -> None:
         ("chair~dining", "FAMILY~STYLE:SEED"),
         ("chair~dining:-1", "FAMILY~STYLE:SEED"),
         ("chair~dining:99999999999", "FAMILY~STYLE:SEED"),
-        ("chest~tv:2#top", "moving part of 'chest~tv:2'"),
+        ("tv_unit~low:2#top", "moving part of 'tv_unit~low:2'"),
     ],
 )
 def test_names_are_refused_in_words_and_at_their_place(name: str, why: str, tmp_path: Path) -> None:
