@@ -24,6 +24,7 @@ __all__ = [
     "cabinet_drawer",
     "divided",
     "outer_doors",
+    "unit",
 ]
 
 BOARD_M = 0.018
@@ -52,23 +53,42 @@ CABINET_MATERIALS = {
 }
 
 
+def unit(
+    b: PieceBuilder,
+    material: PieceMaterial,
+    outer: Box,
+    *,
+    top: PieceMaterial | None = None,
+    has_top: bool = True,
+    has_back: bool = True,
+) -> tuple[Box, Box]:
+    """Add a carcass as large as a box; return its hollow and the room of its fronts.
+
+    Without a top its fronts reach up to the box's upper side.
+    """
+    front = outer.high[0] - 0.022
+    lid = BOARD_M if has_top else 0.0
+    inside = outer.within((0.006, BOARD_M, BOARD_M), (0.022, BOARD_M, lid))
+    carcass(b, material, inside, top=top, has_top=has_top, has_back=has_back)
+    x = front + 0.001
+    low, high = (x, *outer.low[1:]), (x + 0.019, outer.high[1], outer.high[2] - lid)
+    return inside, Box(low, high).inset(CLEARANCE_M)
+
+
 def cabinet_body(b: PieceBuilder, v: Values) -> tuple[Box, Box]:
     """Add what it stands on and a carcass; return its hollow and the room of its fronts.
 
     `v.leg` is a kind of leg, ``plinth``, or ``none``.
     """
-    front = v.depth / 2 - 0.022
-    low = (-v.depth / 2 + 0.006, -v.width / 2 + BOARD_M, v.legs + BOARD_M)
-    inside = Box(low, (front, v.width / 2 - BOARD_M, v.height - BOARD_M))
-    carcass(b, v.scheme[0], inside, top=v.scheme[2], overhang=0.0)
+    half, side = v.depth / 2, v.width / 2
+    outer = Box((-half, -side, v.legs), (half, side, v.height))
+    inside, fronts = unit(b, v.scheme[0], outer, top=v.scheme[2])
     if v.leg == "plinth":
         size = (v.depth - 0.08, v.width - 0.02, v.legs)
         b.box(v.scheme[0], size, (-0.03, 0.0, v.legs / 2))
     elif v.leg != "none":
         four_legs(b, v.frame, v.leg, v.depth - 0.06, v.width - 0.06, v.legs, 0.04)
-    x = front + 0.001
-    fronts = Box((x, -v.width / 2, v.legs), (x + 0.019, v.width / 2, v.height - BOARD_M))
-    return inside, fronts.inset(CLEARANCE_M)
+    return inside, fronts
 
 
 def cabinet_drawer(
@@ -79,6 +99,7 @@ def cabinet_drawer(
     inside: Box,
     *,
     front: FrontKind | None = None,
+    fill: bool = True,
 ) -> None:
     """Add a drawer of the cabinet's materials; its front is the cabinet's unless told otherwise."""
     drawer(
@@ -92,6 +113,7 @@ def cabinet_drawer(
         handle_kind=v.handle,
         metal_=v.metal,
         side_gap=0.03,
+        fill=fill,
     )
 
 

@@ -143,6 +143,7 @@ def door(
     metal_: PieceMaterial | None = None,
     opens_deg: float = 110.0,
     handle_z: float | None = None,
+    pane: PieceMaterial | None = None,
 ) -> None:
     """Add a hinged door: a front panel, its hinge at its left or right (as it looks), a handle."""
     left = hinge == "left"
@@ -151,7 +152,7 @@ def door(
     with b.hinge(
         name, "door", at=at, axis=(0.0, 0.0, -1.0 if not left else 1.0), opens_deg=opens_deg
     ):
-        front_panel(b, material, kind, panel)
+        front_panel(b, material, kind, panel, pane=pane)
         inset = min(0.045, 0.2 * panel.size[1])
         grip = panel.low[1] + inset if left else panel.high[1] - inset
         z = panel.middle[2] if handle_z is None else handle_z
@@ -181,13 +182,20 @@ def flap(
     metal_: PieceMaterial | None = None,
     opens_deg: float = 88.0,
     length: float = 0.0,
+    pane: PieceMaterial | None = None,
+    extra: tuple[PieceMaterial, Box] | None = None,
 ) -> None:
-    """Add a front that folds down or up, with a handle near its free edge, `length` [m] long."""
+    """Add a front that folds down or up, with a handle near its free edge, `length` [m] long.
+
+    `extra` is a board that goes with it.
+    """
     down = hinge == "bottom"
     at = (panel.high[0], panel.middle[1], panel.low[2] if down else panel.high[2])
     axis = (0.0, 1.0 if down else -1.0, 0.0)
     with b.hinge(name, category, at=at, axis=axis, opens_deg=opens_deg):
-        front_panel(b, material, kind, panel)
+        front_panel(b, material, kind, panel, pane=pane)
+        if extra is not None:
+            b.box(extra[0], extra[1].size, extra[1].middle)
         edge = min(0.05, 0.2 * panel.size[2])
         z = panel.high[2] - edge if down else panel.low[2] + edge
         handle(

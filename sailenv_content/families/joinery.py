@@ -113,6 +113,7 @@ def carcass(
     top: PieceMaterial | None = None,
     overhang: float = 0.0,
     has_back: bool = True,
+    has_top: bool = True,
 ) -> None:
     """Add sides, bottom, top and back around a hollow that is open at its front."""
     size, middle = inside.size, inside.middle
@@ -123,8 +124,9 @@ def carcass(
         b.box(material, (depth, board, size[2]), at)
     whole = size[1] + 2.0 * board
     b.box(material, (depth, whole, board), (x, middle[1], inside.low[2] - board / 2.0))
-    lid = (depth + overhang, whole + 2.0 * overhang, board)
-    b.box(top or material, lid, (x + overhang / 2.0, middle[1], inside.high[2] + board / 2.0))
+    if has_top:
+        lid = (depth + overhang, whole + 2.0 * overhang, board)
+        b.box(top or material, lid, (x + overhang / 2.0, middle[1], inside.high[2] + board / 2.0))
     if has_back:
         b.box(
             back or material,

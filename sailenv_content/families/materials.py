@@ -112,16 +112,19 @@ def paint(colour: str, roughness: float = 0.42, density: float = 600.0) -> Piece
 
 
 @lru_cache(maxsize=256)
-def metal(kind: str) -> PieceMaterial:
-    """Return a metal by name, or one that is powder-coated in ``#rrggbb``."""
+def metal(kind: str, density: float = 2500.0) -> PieceMaterial:
+    """Return a metal by name, or one that is powder-coated in ``#rrggbb``.
+
+    Tubes are drawn as rods and cases of sheet as boards, hence the densities.
+    """
     if kind.startswith("#"):
         made = Material(name=f"coated {kind}", base_colour=(*colour_of(kind), 1.0), roughness=0.5)
-        return PieceMaterial(made, 1.0, 2500.0)
+        return PieceMaterial(made, 1.0, density)
     colour, roughness = _METALS[kind]
     made = Material(
         name=kind, base_colour=(*colour_of(colour), 1.0), metallic=1.0, roughness=roughness
     )
-    return PieceMaterial(made, 1.0, 2500.0)
+    return PieceMaterial(made, 1.0, density)
 
 
 @lru_cache(maxsize=256)

@@ -146,7 +146,30 @@ OPENING = (
     "nightstand~door:1",
     "bookcase~cabinet:1",
     "bed~drawers:0",
+    "desk~pedestal:2",
+    "desk~bureau:0",
+    "desk~writing:0",
+    "oven~cooker:0",
+    "oven~range:1",
+    "oven~microwave:2",
+    "dishwasher~free:0",
+    "dishwasher~integrated:1",
+    "fridge~combi:1",
+    "fridge~french:0",
 )
+OPEN_FIRST = {
+    "tray": "door",
+    "rack": "door",
+    "left tray": "left door",
+    "left rack": "left door",
+    "right tray": "right door",
+    "right rack": "right door",
+    "lower basket": "door",
+    "upper basket": "door",
+    **{f"compartment {k}": "door" for k in (1, 2)},
+    **{f"freezer compartment {k}": "freezer door" for k in range(1, 6)},
+}
+"""What is behind a door, and the door."""
 PENETRATION_M = 0.001
 STEPS = 8
 
@@ -167,7 +190,7 @@ def depth_m(world: World, one: Body, other: Body) -> float:
 
 @pytest.mark.parametrize("name", OPENING)
 def test_joints_sweep_their_range_without_striking(name: str) -> None:
-    """Each alone, against the body and all that is shut; poses by the joint's own arithmetic."""
+    """Against the body and all else, shut but for the door before it; poses by arithmetic."""
     asset = LIBRARY.get(name)
     with closing(world_of({"name": "piece", "asset": name, "static": True})) as world:
         bodies = {body.placement.name: body for body in world.bodies}
@@ -175,6 +198,10 @@ def test_joints_sweep_their_range_without_striking(name: str) -> None:
         for part in asset.moving:
             body, number = bodies[f"piece {part.name}"], world.find(f"piece {part.name}")
             assert body.placement.joint is not None
+            door = OPEN_FIRST.get(part.name)
+            if door is not None:
+                angle = next(one.limits[1] for one in asset.moving if one.name == door)
+                world.set_joint(world.find(f"piece {door}"), angle)
             for position in np.linspace(*part.limits, STEPS).tolist():
                 world.set_joint(number, position)
                 there = link_pose(Pose(), body.placement.joint, position)
@@ -183,6 +210,8 @@ def test_joints_sweep_their_range_without_striking(name: str) -> None:
                     if other is not body:
                         assert depth_m(world, body, other) < PENETRATION_M
             world.set_joint(number, 0.0)
+            if door is not None:
+                world.set_joint(world.find(f"piece {door}"), 0.0)
 
 
 def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
