@@ -195,6 +195,7 @@ def dishwasher(
     handle_kind: str = "bar",
     panel: Box | None = None,
     strip: PieceMaterial | None = None,
+    prefix: str = "",
 ) -> None:
     """Add a dishwasher: a case lined with steel, a door that folds down, baskets of dishes.
 
@@ -218,7 +219,7 @@ def dishwasher(
             (room.low[0] + 0.012, room.low[1] + 0.012, low),
             (room.high[0] - 0.014, room.high[1] - 0.012, low + height),
         )
-        with b.slide(name, "basket", by=round(0.75 * float(basket.size[0]), 3)):
+        with b.slide(f"{prefix}{name}", "basket", by=round(0.75 * float(basket.size[0]), 3)):
             wire_basket(b, paint("#8d9296", 0.4), basket)
             if "upper" in name:
                 _cups(b, basket)
@@ -236,7 +237,7 @@ def dishwasher(
     )
     flap(
         b,
-        "door",
+        f"{prefix}door",
         face,
         kind,
         leaf,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import closing
 from pathlib import Path
@@ -94,7 +95,7 @@ def test_a_piece_is_whole(family: str, style: str, pieces: dict[tuple[str, str],
     assert ((high - low >= sizes.least_m) & (high - low <= sizes.most_m)).all()
     assert -0.005 <= low[2] <= 0.02
     assert asset.collision
-    assert 0.02 < asset.mass_kg < 400.0
+    assert 0.02 < asset.mass_kg < 600.0
     assert (low <= asset.centre_of_mass_m).all()
     assert (np.asarray(asset.centre_of_mass_m) <= high).all()
 
@@ -154,6 +155,8 @@ OPENING = (
     "oven~microwave:2",
     "dishwasher~free:0",
     "dishwasher~integrated:1",
+    "kitchen_unit~wall:1",
+    "kitchen_unit~corner:2",
     "fridge~combi:1",
     "fridge~french:0",
 )
@@ -170,6 +173,16 @@ OPEN_FIRST = {
     **{f"freezer compartment {k}": "freezer door" for k in range(1, 6)},
 }
 """What is behind a door, and the door."""
+
+
+def door_before(part: str) -> str | None:
+    """Return the door that must be open before a part can move."""
+    cabinet = re.match(r"cabinet \d ", part)
+    prefix = cabinet[0] if cabinet else ""
+    door = OPEN_FIRST.get(part.removeprefix(prefix))
+    return None if door is None else prefix + door
+
+
 PENETRATION_M = 0.001
 STEPS = 8
 
@@ -198,7 +211,7 @@ def test_joints_sweep_their_range_without_striking(name: str) -> None:
         for part in asset.moving:
             body, number = bodies[f"piece {part.name}"], world.find(f"piece {part.name}")
             assert body.placement.joint is not None
-            door = OPEN_FIRST.get(part.name)
+            door = door_before(part.name)
             if door is not None:
                 angle = next(one.limits[1] for one in asset.moving if one.name == door)
                 world.set_joint(world.find(f"piece {door}"), angle)
