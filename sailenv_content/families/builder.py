@@ -146,6 +146,11 @@ class PieceBuilder:
         sides, place = np.asarray(size, np.float64), np.asarray(at, np.float64)
         self._at.shapes.append(self._frame.box_shape(sides, place, np.asarray(turn, np.float64)))
 
+    def hull(self, mesh: Mesh, at: ArrayLike, *, turn: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        """Add the hull of a form that is not drawn, for what is drawn without collision."""
+        mesh = self._frame.mesh(placed(mesh, at, turn))
+        self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
+
     @contextmanager
     def frame(self, at: ArrayLike = (0.0, 0.0, 0.0), yaw_deg: float = 0.0) -> Iterator[None]:
         """Place all that is added inside: turned about z [deg], then shifted [m]."""
