@@ -11,7 +11,7 @@ from sailenv_content.procedural.forms import circle, loft
 from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
 from sailenv_ros.types.model import Mesh
 
-__all__ = ["scaled", "sleeve", "smooth_profile", "vessel"]
+__all__ = ["closed_ring", "scaled", "sleeve", "smooth_profile", "vessel"]
 
 
 def smooth_profile(points: ArrayLike, count: int = 20) -> Floats:
@@ -45,7 +45,7 @@ def vessel(
     """
     rows = np.asarray(outside, np.float64)
     base, top = rows[0, 1], rows[-1, 1]
-    inner = rows[::-1] - (wall, 0.0)
+    inner = rows[::-1] - np.array([wall, 0.0])
     inner = inner[(inner[:, 1] > base + max(floor, wall)) & (inner[:, 1] < top - 0.2 * wall)]
     inner[:, 0] = np.maximum(inner[:, 0], 0.0015)
     rim = [
@@ -69,7 +69,19 @@ def sleeve(
 ) -> Mesh:
     """Return a wall along rows of radius and height [m], open at both ends: a shade, a ring."""
     rows = np.asarray(outside, np.float64)
-    profile = np.concatenate([rows, rows[::-1] - (wall, 0.0), rows[:1]])
+    loop = np.concatenate([rows, rows[::-1] - np.array([wall, 0.0])])
+    return closed_ring(loop, segments=segments, tile_m=tile_m, crease_deg=crease_deg)
+
+
+def closed_ring(
+    loop: ArrayLike, *, segments: int = 32, tile_m: float = 1.0, crease_deg: float = 40.0
+) -> Mesh:
+    """Return what a closed outline of radius and height [m], counter-clockwise, makes as it turns.
+
+    Its last row is joined with its first.
+    """
+    rows = np.asarray(loop, np.float64)
+    profile = np.concatenate([rows, rows[:1]])
     rings = np.empty((len(profile), segments, 3))
     rings[..., :2] = profile[:, None, :1] * circle(segments)
     rings[..., 2] = profile[:, 1:]
