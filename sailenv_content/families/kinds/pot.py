@@ -118,7 +118,7 @@ def _kettle(b: PieceBuilder, v: Values) -> None:
         bow = [(0.82 * r * np.cos(t), 0.0, 0.86 * h + 0.75 * r * np.sin(t) ** 0.8) for t in turn]
         b.form(metal("steel"), swept(bow, 0.005, sides=10), collides="none")
         b.form(v.grip, swept(bow[4:-4], 0.011, sides=12))
-    with b.slide("lid", "lid", by=0.03, axis=(0.0, 0.0, 1.0), friction=0.2, damping=1.0):
+    with b.part("lid", "lid"):
         z = h + 0.3 * v.wall + 0.002
         cap = [(0, z), (top, z), (top, z + 0.003), (0.6 * top, z + 0.012), (0, z + 0.014)]
         b.form(v.cover, turned(cap, segments=32))

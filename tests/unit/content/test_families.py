@@ -158,7 +158,6 @@ OPENING = (
     "kitchen_unit~wall:1",
     "kitchen_unit~corner:2",
     "pot~stock:0",
-    "pot~kettle:1",
     "fridge~combi:1",
     "fridge~french:0",
 )
