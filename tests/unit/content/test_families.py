@@ -158,6 +158,8 @@ OPENING = (
     "kitchen_unit~wall:1",
     "kitchen_unit~corner:2",
     "pot~stock:0",
+    "shoe_rack~tipping:1",
+    "shoe_rack~closed:0",
     "fridge~combi:1",
     "fridge~french:0",
 )
