@@ -10,9 +10,11 @@ from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import PieceMaterial, paint
 from sailenv_content.families.shaping import swept, turned
-from sailenv_content.procedural.forms import curve
+from sailenv_content.procedural.forms import curve, loft, rectangle
+from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
+from sailenv_ros.types.model import Mesh
 
-__all__ = ["TapKind", "sink_basin", "tap"]
+__all__ = ["TapKind", "drain", "sink_basin", "tap", "tub"]
 
 TapKind = Literal["arc", "straight", "pillar"]
 
@@ -95,6 +97,53 @@ def sink_basin(
             b.box(material, (rim, size[1] + 2 * rim, 0.003), at, bevel=0.001, collides=False)
             at = (middle[0], middle[1] + sign * (size[1] + rim) / 2, high)
             b.box(material, (size[0], rim, 0.003), at, bevel=0.001, collides=False)
-    drain = [(0, 0), (0.042, 0), (0.042, 0.002), (0.03, 0.003), (0.02, 0.0005), (0, 0.0005)]
-    at = (middle[0], middle[1], room.low[2])
-    b.form(paint("#8e9194", 0.25), turned(drain, segments=20), at, collides="none")
+    drain(b, float(middle[0]), float(middle[1]), float(room.low[2]))
+
+
+def drain(b: PieceBuilder, x: float, y: float, z: float) -> None:
+    """Add the ring and the grid of a drain on a floor."""
+    rows = [(0, 0), (0.036, 0), (0.036, 0.002), (0.028, 0.003), (0.02, 0.0005), (0, 0.0005)]
+    b.form(paint("#8e9194", 0.25), turned(rows, segments=20), (x, y, z), collides="none")
+
+
+def tub(
+    size: tuple[float, float, float],
+    *,
+    wall: float,
+    floor: float,
+    radius: float,
+    taper: float = 0.0,
+    slope: float = 0.04,
+    tile_m: float = 1.0,
+) -> Mesh:
+    """Return a tub with round corners, open at its top, its base at z = 0.
+
+    Parameters
+    ----------
+    size : (3,) tuple of float
+        Along x, y, z [m].
+    wall, floor : float
+        Thickness of its rim and height of its inner floor [m].
+    radius : float
+        Of its corners seen from above [m].
+    taper, slope : float
+        By how much it is narrower on each side at its base, outside and inside [m].
+    """
+    depth, width, height = size
+    bend = min(0.05, 0.3 * (height - floor))
+    insets = [(taper + 0.01, 0.0), (taper, 0.01), (0.004, height - 0.02), (0.0, height - 0.008)]
+    insets += [(0.006, height), (wall - 0.006, height), (wall, height - 0.008)]
+    for turn in np.linspace(0.0, np.pi / 2.0, 6):
+        low = height - floor - bend
+        drop = floor + bend * (1.0 - np.sin(turn))
+        insets.append(
+            (wall + slope * low / max(height - floor, 1e-6) + bend * (1 - np.cos(turn)), drop)
+        )
+    rings = []
+    for inset, z in insets:
+        corner = max(radius - 0.6 * inset, 0.012)
+        flat = rectangle(width - 2 * inset, depth - 2 * inset, corner, 8)
+        rings.append(np.c_[flat, np.full(len(flat), z)])
+    raw = loft(np.array(rings))
+    uvs = raw.positions[:, :2] / tile_m + raw.positions[:, [2]] * (0.0, 1.0) / tile_m
+    return smooth_mesh(RawMesh(positions=raw.positions, uvs=uvs, triangles=raw.triangles), 40.0)
