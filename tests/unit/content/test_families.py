@@ -159,6 +159,11 @@ OPENING = (
     "kitchen_unit~corner:2",
     "pot~stock:0",
     "toilet~floor:0",
+    "basket~laundry:0",
+    "box~chest:1",
+    "box~carton:0",
+    "bin~pedal:0",
+    "bin~swing:1",
     "toilet~wall:1",
     "washbasin~cabinet:0",
     "bath~shower:0",
@@ -168,28 +173,24 @@ OPENING = (
     "fridge~combi:1",
     "fridge~french:0",
 )
-OPEN_FIRST = {
-    "tray": "door",
-    "rack": "door",
-    "left tray": "left door",
-    "left rack": "left door",
-    "right tray": "right door",
-    "right rack": "right door",
-    "lower basket": "door",
-    "upper basket": "door",
-    "seat": "lid",
-    **{f"compartment {k}": "door" for k in (1, 2)},
-    **{f"freezer compartment {k}": "freezer door" for k in range(1, 6)},
+BEHIND = {
+    "door": ("tray", "rack", "lower basket", "upper basket", "compartment 1", "compartment 2"),
+    "left door": ("left tray", "left rack"),
+    "right door": ("right tray", "right rack"),
+    "freezer door": tuple(f"freezer compartment {k}" for k in range(1, 6)),
+    "lid": ("seat",),
+    "front flap": ("left flap", "right flap"),
+    "back flap": ("left flap", "right flap"),
 }
-"""What is behind a door, and the door."""
+"""Doors, and what cannot move before they are open."""
 
 
-def door_before(part: str) -> str | None:
-    """Return the door that must be open before a part can move."""
+def doors_before(part: str) -> tuple[str, ...]:
+    """Return the doors that must be open before a part can move."""
     cabinet = re.match(r"cabinet \d ", part)
     prefix = cabinet[0] if cabinet else ""
-    door = OPEN_FIRST.get(part.removeprefix(prefix))
-    return None if door is None else prefix + door
+    name = part.removeprefix(prefix)
+    return tuple(prefix + door for door, parts in BEHIND.items() if name in parts)
 
 
 PENETRATION_M = 0.001
@@ -220,10 +221,10 @@ def test_joints_sweep_their_range_without_striking(name: str) -> None:
         for part in asset.moving:
             body, number = bodies[f"piece {part.name}"], world.find(f"piece {part.name}")
             assert body.placement.joint is not None
-            door = door_before(part.name)
-            if door is not None:
-                angle = next(one.limits[1] for one in asset.moving if one.name == door)
-                world.set_joint(world.find(f"piece {door}"), angle)
+            doors = doors_before(part.name)
+            for door in asset.moving:
+                if door.name in doors:
+                    world.set_joint(world.find(f"piece {door.name}"), door.limits[1])
             for position in np.linspace(*part.limits, STEPS).tolist():
                 world.set_joint(number, position)
                 there = link_pose(Pose(), body.placement.joint, position)
@@ -232,8 +233,8 @@ def test_joints_sweep_their_range_without_striking(name: str) -> None:
                     if other is not body:
                         assert depth_m(world, body, other) < PENETRATION_M
             world.set_joint(number, 0.0)
-            if door is not None:
-                world.set_joint(world.find(f"piece {door}"), 0.0)
+            for name_before in doors:
+                world.set_joint(world.find(f"piece {name_before}"), 0.0)
 
 
 def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
