@@ -12,7 +12,7 @@ import numpy as np
 
 from sailenv_content.standard.patterns import PATTERNS, pattern_maps
 from sailenv_ros.types.colour import linear_from_srgb
-from sailenv_ros.types.model import Material
+from sailenv_ros.types.model import Material, Texture
 
 __all__ = [
     "FABRICS",
@@ -26,6 +26,7 @@ __all__ = [
     "leather",
     "metal",
     "paint",
+    "printed",
     "wood",
 ]
 
@@ -149,6 +150,12 @@ def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> PieceMaterial:
         alpha="blend",
     )
     return PieceMaterial(made, 1.0, 2500.0)
+
+
+def printed(name: str, picture: Texture) -> PieceMaterial:
+    """Return paper or canvas with a picture, whose u and v go from 0 to 1."""
+    made = Material(name=name, base_colour_texture=picture, base_colour=(1.0,) * 4, roughness=0.8)
+    return PieceMaterial(made, 1.0, 700.0)
 
 
 @lru_cache(maxsize=256)
