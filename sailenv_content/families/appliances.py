@@ -29,13 +29,13 @@ def hollow_case(
     at = (outer.low[0] + wall / 2, middle[1], middle[2])
     b.box(material, (wall, size[1] - 2 * wall, size[2] - 2 * wall), at, bevel=0.001)
     skin = 0.002
-    inner, at = room.size, room.middle
+    inner, mid = room.size, room.middle
     for sign in (-1.0, 1.0):
-        side = (at[0], at[1] + sign * (inner[1] - skin) / 2, at[2])
+        side = (mid[0], mid[1] + sign * (inner[1] - skin) / 2, mid[2])
         b.box(liner, (inner[0] - 0.002, skin, inner[2]), side, bevel=0.0003, collides=False)
-        level = (at[0], at[1], at[2] + sign * (inner[2] - skin) / 2)
+        level = (mid[0], mid[1], mid[2] + sign * (inner[2] - skin) / 2)
         b.box(liner, (inner[0] - 0.002, inner[1], skin), level, bevel=0.0003, collides=False)
-    back = (room.low[0] + skin / 2, at[1], at[2])
+    back = (room.low[0] + skin / 2, mid[1], mid[2])
     b.box(liner, (skin, inner[1], inner[2]), back, bevel=0.0003, collides=False)
     return room
 

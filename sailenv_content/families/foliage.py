@@ -9,12 +9,41 @@ from scipy.spatial.transform import Rotation
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.lathe import smooth_profile, vessel
 from sailenv_content.families.materials import PieceMaterial, paint
-from sailenv_content.families.shaping import Floats, turned
+from sailenv_content.families.shaping import Floats, swept, turned
+from sailenv_content.procedural.forms import curve
 from sailenv_ros.types.model import Mesh
 
-__all__ = ["LEAF_WIDTHS", "SOIL", "leaf", "place_leaves", "planter"]
+__all__ = [
+    "BARK",
+    "DARK",
+    "DEEP",
+    "FRESH",
+    "GREY",
+    "LEAF_WIDTHS",
+    "SOIL",
+    "STEM",
+    "bush",
+    "leaf",
+    "place_leaves",
+    "planter",
+    "stem",
+    "tones",
+]
 
 SOIL = paint("#3a2d22", 0.95, 900.0)
+BARK = paint("#6b5540", 0.9, 600.0)
+STEM = paint("#5f7a3f", 0.6, 700.0)
+
+
+def tones(*colours: str) -> tuple[PieceMaterial, ...]:
+    """Return leaves of some colours."""
+    return tuple(paint(c, 0.45, 400.0) for c in colours)
+
+
+DEEP = tones("#24452a", "#2d5530", "#356238")
+FRESH = tones("#4a7a36", "#5a8c40", "#6c9a4a")
+GREY = tones("#6f8a6a", "#7d9878", "#8aa586")
+DARK = tones("#1f3a2a", "#274a30", "#4a2f35")
 
 LEAF_WIDTHS: dict[str, tuple[float, ...]] = {
     "oval": (0.05, 0.5, 0.85, 1.0, 0.95, 0.75, 0.4, 0.02),
@@ -120,6 +149,37 @@ def place_leaves(
         triangles=(mesh.triangles[None] + first).reshape(-1, 3).astype(np.uint32),
     )
     b.form(material, whole, collides="none", volume=2e-6 * count)
+
+
+def bush(b: PieceBuilder, low: float, high: float, radius: float) -> None:
+    """Let the leaves collide as one rounded body."""
+    mid, t = (low + high) / 2, np.linspace(-np.pi / 2, np.pi / 2, 7)
+    rows = np.stack([0.75 * radius * np.cos(t), mid + 0.42 * (high - low) * np.sin(t)], -1)
+    rows[[0, -1], 0] = 0.0
+    b.hull(turned(rows, segments=10), (0.0, 0.0, 0.0))
+
+
+def stem(
+    b: PieceBuilder,
+    soil: float,
+    tall: float,
+    lean: float,
+    thick: float,
+    yaw: float,
+    material: PieceMaterial = BARK,
+) -> Floats:
+    """Add a stem that bends; return places along it."""
+    c, s = np.cos(yaw), np.sin(yaw)
+    path = curve(
+        [
+            (0, 0, soil - 0.02),
+            (0.15 * lean * c, 0.15 * lean * s, soil + 0.4 * tall),
+            (lean * c, lean * s, soil + tall),
+        ],
+        24,
+    )
+    b.form(material, swept(path, np.linspace(thick, 0.5 * thick, 24), sides=9), collides="none")
+    return path
 
 
 def planter(

@@ -1,4 +1,4 @@
-"""Frames around what hangs on a wall: four bars with a profile, a back; the wall is at x = 0."""
+"""Frames for walls: four bars with a profile, and a back; the wall is at x = 0."""
 
 from __future__ import annotations
 

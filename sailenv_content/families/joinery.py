@@ -15,7 +15,7 @@ from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import PieceMaterial
 from sailenv_content.families.shaping import swept, turned
 
-__all__ = ["carcass", "four_legs", "leg", "shelf"]
+__all__ = ["carcass", "four_legs", "leg", "open_box", "shelf"]
 
 
 BOARD_M = 0.018
@@ -149,3 +149,45 @@ def shelf(
     size, middle = inside.size, inside.middle
     at = (middle[0] - setback / 2.0, middle[1], z - thick / 2.0)
     b.box(material, (size[0] - setback, size[1] - 0.001, thick), at)
+
+
+def open_box(
+    b: PieceBuilder,
+    material: PieceMaterial,
+    outer: Box,
+    wall: float,
+    *,
+    liner: PieceMaterial | None = None,
+) -> Box:
+    """Add a floor and four sides around a hollow that is open at its top; return it."""
+    size, middle = outer.size, outer.middle
+    bevel = min(0.003, 0.3 * wall)
+    b.box(
+        material,
+        (size[0], size[1], wall),
+        (middle[0], middle[1], outer.low[2] + wall / 2),
+        bevel=bevel,
+    )
+    tall, z = size[2] - wall, middle[2] + wall / 2
+    for sign in (-1.0, 1.0):
+        b.box(
+            material,
+            (wall, size[1], tall),
+            (middle[0] + sign * (size[0] - wall) / 2, middle[1], z),
+            bevel=bevel,
+        )
+        b.box(
+            material,
+            (size[0] - 2 * wall, wall, tall),
+            (middle[0], middle[1] + sign * (size[1] - wall) / 2, z),
+            bevel=bevel,
+        )
+    room = outer.within((wall, wall, wall), (wall, wall, 0.0))
+    if liner is not None:
+        b.box(
+            liner,
+            (room.size[0], room.size[1], 0.003),
+            (middle[0], middle[1], room.low[2] + 0.0015),
+            collides=False,
+        )
+    return room

@@ -88,29 +88,20 @@ def _check(family: Family, asset: Asset) -> None:
 def _asset(family: Family, name: PieceName, builder: PieceBuilder) -> Asset:
     components = [component for component in builder.components if component.meshes]
     category = family.styles[name.style].category or family.category
-    whole = _compound(category, name.whole, _title(name), components, builder)
     movers = [component for component in components if component.joint is not None]
+    groups = [[one for one in components if _belongs(one, mover)] for mover in movers]
+    for group in groups:
+        _weigh(group)
+    title = _title(name)
+    whole = _compound(category, name.whole, title, components, builder)
     if not movers:
         return whole[0]
-    taken = {component.name for component in movers}
-
-    def belongs(component: Component, root: str) -> bool:
-        return component.name == root or component.name.startswith(root + PART_MARK)
-
-    still = [
-        component for component in components if not any(belongs(component, root) for root in taken)
-    ]
+    still = [one for one in components if not any(_belongs(one, mover) for mover in movers)]
     models = whole[1]
-    body, _ = _compound(category, name.whole, _title(name), still, builder, models)
+    body, _ = _compound(category, name.whole, title, still, builder, models)
     moving = tuple(
-        _moving(
-            component,
-            name,
-            [one for one in components if belongs(one, component.name)],
-            builder,
-            models,
-        )
-        for component in movers
+        _moving(mover, name, group, builder, models)
+        for mover, group in zip(movers, groups, strict=True)
     )
     asset = whole[0]
     return Asset(
@@ -127,6 +118,18 @@ def _asset(family: Family, name: PieceName, builder: PieceBuilder) -> Asset:
         moving=moving,
         still=body,
     )
+
+
+def _belongs(component: Component, mover: Component) -> bool:
+    return component.name == mover.name or component.name.startswith(mover.name + PART_MARK)
+
+
+def _weigh(group: list[Component]) -> None:
+    """Make what moves as heavy as physics needs; the whole is the sum of its bodies."""
+    share = LEAST_MASS_KG / max(sum(component.mass_kg for component in group), 1e-9)
+    for component in group if share > 1.0 else ():
+        component.mass_kg *= share
+        component.moment = component.moment * share
 
 
 Drawn = dict[str, list[ModelPart]]

@@ -67,15 +67,15 @@ def tap(
             with b.hinge(name, "handle", at=at, axis=(0.0, 0.0, 1.0), opens_deg=180.0):
                 for turn in (0.0, 90.0):
                     bar = (0.06, 0.011, 0.011)
-                    top = (at[0], at[1], z + 0.052)
-                    b.box(material, bar, top, turn=(0, 0, turn), bevel=0.004, collides=False)
+                    knob = (at[0], at[1], z + 0.052)
+                    b.box(material, bar, knob, turn=(0, 0, turn), bevel=0.004, collides=False)
                 b.collide((0.05, 0.05, 0.012), (at[0], at[1], z + 0.053))
         return
     with b.hinge("lever", "handle", at=(x, y, z + 0.035), axis=(0, -1.0, 0), opens_deg=35.0):
         stub = [(x, y - 0.018, z + 0.035), (x, y - 0.045, z + 0.035)]
         b.form(material, swept(stub, 0.012, sides=12), collides="none")
-        bar = [(x, y - 0.036, z + 0.035), (x + 0.085, y - 0.036, z + 0.045)]
-        b.form(material, swept(bar, (0.006, 0.0045), sides=10))
+        grip = [(x, y - 0.036, z + 0.035), (x + 0.085, y - 0.036, z + 0.045)]
+        b.form(material, swept(grip, (0.006, 0.0045), sides=10))
 
 
 def sink_basin(

@@ -32,7 +32,7 @@ def _outline(v: Values, count: int) -> np.ndarray:
         along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
         at = np.linspace(0, along[-1], count, endpoint=False)
         return np.stack([np.interp(at, along, closed[:, k]) for k in range(2)], -1)
-    return circle(count) * (v.depth / 2, v.width / 2)
+    return np.asarray(circle(count) * (v.depth / 2, v.width / 2))
 
 
 def _woven(b: PieceBuilder, v: Values) -> None:

@@ -7,54 +7,13 @@ from sailenv_content.families.contents import folded
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import front_panel
 from sailenv_content.families.hollow import Box
-from sailenv_content.families.materials import WOODS, PieceMaterial, fabric, metal, paint
+from sailenv_content.families.joinery import open_box
+from sailenv_content.families.materials import WOODS, fabric, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import swept
 from sailenv_content.procedural.forms import curve
 
 __all__ = ["FAMILY"]
-
-
-def _sides(
-    b: PieceBuilder,
-    material: PieceMaterial,
-    outer: Box,
-    wall: float,
-    *,
-    liner: PieceMaterial | None = None,
-) -> Box:
-    """Add a floor and four sides around a hollow that is open at its top; return it."""
-    size, middle = outer.size, outer.middle
-    bevel = min(0.003, 0.3 * wall)
-    b.box(
-        material,
-        (size[0], size[1], wall),
-        (middle[0], middle[1], outer.low[2] + wall / 2),
-        bevel=bevel,
-    )
-    tall, z = size[2] - wall, middle[2] + wall / 2
-    for sign in (-1.0, 1.0):
-        b.box(
-            material,
-            (wall, size[1], tall),
-            (middle[0] + sign * (size[0] - wall) / 2, middle[1], z),
-            bevel=bevel,
-        )
-        b.box(
-            material,
-            (size[0] - 2 * wall, wall, tall),
-            (middle[0], middle[1] + sign * (size[1] - wall) / 2, z),
-            bevel=bevel,
-        )
-    room = outer.within((wall, wall, wall), (wall, wall, 0.0))
-    if liner is not None:
-        b.box(
-            liner,
-            (room.size[0], room.size[1], 0.003),
-            (middle[0], middle[1], room.low[2] + 0.0015),
-            collides=False,
-        )
-    return room
 
 
 def _chest(b: PieceBuilder, v: Values) -> None:
@@ -69,7 +28,7 @@ def _chest(b: PieceBuilder, v: Values) -> None:
                 (sx * (d / 2 - 0.035), sy * (w / 2 - 0.035), plinth / 2),
             )
     outer = Box((-d / 2, -w / 2, plinth), (d / 2, w / 2, h))
-    room = _sides(b, v.material, outer, t)
+    room = open_box(b, v.material, outer, t)
     face = Box(
         (d / 2 + 0.0005, -w / 2 + 0.01, plinth + 0.02), (d / 2 + 0.016, w / 2 - 0.01, h - 0.02)
     )
@@ -94,7 +53,7 @@ def _chest(b: PieceBuilder, v: Values) -> None:
 def _cardboard(b: PieceBuilder, v: Values) -> None:
     """Make a carton with four flaps, those at the ends below the others."""
     d, w, h, t = v.depth, v.width, v.height, 0.005
-    _sides(b, v.material, Box((-d / 2, -w / 2, 0.0), (d / 2, w / 2, h)), t)
+    open_box(b, v.material, Box((-d / 2, -w / 2, 0.0), (d / 2, w / 2, h)), t)
     low, high = h + 0.002, h + 0.009
     half = min(w / 2 - 0.004, d / 2 - 0.004)
     for sign, name in ((1.0, "left flap"), (-1.0, "right flap")):
@@ -142,7 +101,7 @@ def _jewels(b: PieceBuilder, v: Values) -> None:
     """Make a small box lined with cloth, with a clasp."""
     d, w, h, t = v.small_d, v.small_w, v.small_h, 0.008
     outer = Box((-d / 2, -w / 2, 0.0), (d / 2, w / 2, h))
-    room = _sides(b, v.material, outer, t, liner=v.cloth)
+    room = open_box(b, v.material, outer, t, liner=v.cloth)
     for share in (0.33, 0.66):
         y = room.low[1] + share * room.size[1]
         b.box(
@@ -216,7 +175,7 @@ def _trunk(b: PieceBuilder, v: Values) -> None:
     """Make a trunk with corners and bands of metal, handles at its ends and a lid."""
     d, w, h, t = v.depth, v.width, 0.75 * v.height + 0.08, 0.014
     outer = Box((-d / 2, -w / 2, 0.0), (d / 2, w / 2, h))
-    room = _sides(b, v.coat, outer, t, liner=v.cloth)
+    room = open_box(b, v.coat, outer, t, liner=v.cloth)
     z, tall = h + 0.0025, 0.09
     for share in (-0.3, 0.3):
         b.box(

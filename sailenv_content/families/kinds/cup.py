@@ -20,9 +20,9 @@ def _cup(b: PieceBuilder, v: Values) -> None:
     base = 0.0
     if v.saucer:
         r = 1.75 * v.radius
-        rows = [(0, 0), (0.55 * r, 0), (r, 0.016), (r, 0.019), (0.55 * r, 0.006), (0, 0.005)]
+        dish = [(0, 0), (0.55 * r, 0), (r, 0.016), (r, 0.019), (0.55 * r, 0.006), (0, 0.005)]
         with b.part("saucer", "dish"):
-            b.form(v.material, turned(rows, segments=36))
+            b.form(v.material, turned(dish, segments=36))
         base = 0.006
     rows = smooth_profile(np.array(v.profile) * (v.radius, v.height), 22)
     floor = v.bottom * v.height + 1.6 * v.wall

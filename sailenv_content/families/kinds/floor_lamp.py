@@ -94,7 +94,7 @@ def _reading(b: PieceBuilder, v: Values) -> None:
     h = v.height
     foot(b, v.metal, v.foot, height=0.02)
     neck = np.array([0.0, 0.0, h - 0.1])
-    b.form(v.metal, swept([(0, 0, 0.02), neck], 0.009, sides=12))
+    b.form(v.metal, swept(np.array([(0, 0, 0.02), neck]), 0.009, sides=12))
     tip = neck + np.array([0.26, 0.0, 0.1])
     b.form(v.metal, swept([neck - (0.07, 0, 0.027), tip], 0.007, sides=10))
     knuckle = [(0, -0.012), (0.016, -0.012), (0.016, 0.012), (0, 0.012)]

@@ -7,58 +7,27 @@ import numpy as np
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.crockery import GLAZES
 from sailenv_content.families.family import Family, Style
-from sailenv_content.families.foliage import leaf, place_leaves, planter
+from sailenv_content.families.foliage import (
+    BARK,
+    DARK,
+    DEEP,
+    FRESH,
+    GREY,
+    STEM,
+    bush,
+    leaf,
+    place_leaves,
+    planter,
+    stem,
+    tones,
+)
 from sailenv_content.families.lathe import smooth_profile
-from sailenv_content.families.materials import PieceMaterial, paint
+from sailenv_content.families.materials import paint
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
-from sailenv_content.families.shaping import Floats, swept, turned
+from sailenv_content.families.shaping import swept, turned
 from sailenv_content.procedural.forms import curve
 
 __all__ = ["FAMILY"]
-
-BARK = paint("#6b5540", 0.9, 600.0)
-STEM = paint("#5f7a3f", 0.6, 700.0)
-
-
-def _tones(*colours: str) -> tuple[PieceMaterial, ...]:
-    return tuple(paint(c, 0.45, 400.0) for c in colours)
-
-
-DEEP = _tones("#24452a", "#2d5530", "#356238")
-FRESH = _tones("#4a7a36", "#5a8c40", "#6c9a4a")
-GREY = _tones("#6f8a6a", "#7d9878", "#8aa586")
-DARK = _tones("#1f3a2a", "#274a30", "#4a2f35")
-
-
-def _bush(b: PieceBuilder, low: float, high: float, radius: float) -> None:
-    """Let the leaves collide as one rounded body."""
-    mid, t = (low + high) / 2, np.linspace(-np.pi / 2, np.pi / 2, 7)
-    rows = np.stack([0.75 * radius * np.cos(t), mid + 0.42 * (high - low) * np.sin(t)], -1)
-    rows[[0, -1], 0] = 0.0
-    b.hull(turned(rows, segments=10), (0.0, 0.0, 0.0))
-
-
-def _stem(
-    b: PieceBuilder,
-    soil: float,
-    tall: float,
-    lean: float,
-    thick: float,
-    yaw: float,
-    material: PieceMaterial = BARK,
-) -> Floats:
-    """Add a stem that bends; return places along it."""
-    c, s = np.cos(yaw), np.sin(yaw)
-    path = curve(
-        [
-            (0, 0, soil - 0.02),
-            (0.15 * lean * c, 0.15 * lean * s, soil + 0.4 * tall),
-            (lean * c, lean * s, soil + tall),
-        ],
-        24,
-    )
-    b.form(material, swept(path, np.linspace(thick, 0.5 * thick, 24), sides=9), collides="none")
-    return path
 
 
 def _rubber(b: PieceBuilder, v: Values) -> None:
@@ -68,7 +37,7 @@ def _rubber(b: PieceBuilder, v: Values) -> None:
     for number in range(v.stems):
         yaw = 2.1 * number + b.between(0.0, 1.0)
         tall = v.tall * b.between(0.75, 1.0)
-        path = _stem(b, soil, tall, 0.12 * v.tall * (number > 0), 0.009, yaw)
+        path = stem(b, soil, tall, 0.12 * v.tall * (number > 0), 0.009, yaw)
         count = int(7 + 11 * tall)
         for k in range(count):
             share = 0.18 + 0.82 * k / (count - 1)
@@ -82,7 +51,7 @@ def _rubber(b: PieceBuilder, v: Values) -> None:
                 rise_deg=15 + 50 * share**2 + b.between(-10, 10),
                 roll_deg=b.between(-15, 15),
             )
-    _bush(b, soil + 0.15 * v.tall, soil + v.tall, v.leaf)
+    bush(b, soil + 0.15 * v.tall, soil + v.tall, v.leaf)
 
 
 def _monstera(b: PieceBuilder, v: Values) -> None:
@@ -112,7 +81,7 @@ def _monstera(b: PieceBuilder, v: Values) -> None:
             rise_deg=b.between(-35, 5),
             roll_deg=b.between(-20, 20),
         )
-    _bush(b, soil + 0.3 * v.tall, soil + v.tall, 0.42 * v.tall)
+    bush(b, soil + 0.3 * v.tall, soil + v.tall, 0.42 * v.tall)
 
 
 def _blades(b: PieceBuilder, v: Values) -> None:
@@ -132,7 +101,7 @@ def _blades(b: PieceBuilder, v: Values) -> None:
         place_leaves(
             b, b.pick(*v.greens), inner, at + lift, yaw_deg=yaw, rise_deg=rise, roll_deg=roll
         )
-    _bush(b, soil, soil + v.tall, 0.8 * v.radius)
+    bush(b, soil, soil + v.tall, 0.8 * v.radius)
 
 
 def _fronds(b: PieceBuilder, v: Values) -> None:
@@ -140,7 +109,7 @@ def _fronds(b: PieceBuilder, v: Values) -> None:
     soil = planter(b, v.pot, v.radius, v.pot_m, v.shape)
     base = np.array([0.0, 0.0, soil])
     if v.trunk:
-        path = _stem(b, soil, v.trunk, 0.03, 0.022, 0.5)
+        path = stem(b, soil, v.trunk, 0.03, 0.022, 0.5)
         base = path[-1]
     blades = [
         leaf(v.leaf * s, v.narrow * v.leaf, v.blade, droop=0.25, fold=0.2) for s in (0.5, 0.8, 1.0)
@@ -182,7 +151,7 @@ def _fronds(b: PieceBuilder, v: Values) -> None:
                     roll_deg=sign * 12,
                 )
     top = float(base[2])
-    _bush(b, top, top + v.tall, 0.6 * v.reach)
+    bush(b, top, top + v.tall, 0.6 * v.reach)
 
 
 def _cactus(b: PieceBuilder, v: Values) -> None:
@@ -228,7 +197,7 @@ def _cactus(b: PieceBuilder, v: Values) -> None:
 def _tree(b: PieceBuilder, v: Values) -> None:
     """Make a trunk with branches and many small leaves."""
     soil = planter(b, v.pot, v.radius, v.pot_m, v.shape)
-    trunk = _stem(b, soil, 0.6 * v.tall, 0.1 * v.tall, 0.035 * v.tall, b.between(0, 6))
+    trunk = stem(b, soil, 0.6 * v.tall, 0.1 * v.tall, 0.035 * v.tall, b.between(0, 6))
     top = trunk[-1]
     mesh = leaf(v.leaf, v.narrow * v.leaf, "leaflet", droop=0.2, fold=0.15)
     crown = 0.34 * v.tall
@@ -259,7 +228,7 @@ def _tree(b: PieceBuilder, v: Values) -> None:
                 rise_deg=b.rng.uniform(-40, 50, len(mine)),
                 roll_deg=b.rng.uniform(-40, 40, len(mine)),
             )
-    _bush(b, float(top[2]) - 0.4 * crown, float(top[2]) + 1.1 * crown, crown)
+    bush(b, float(top[2]) - 0.4 * crown, float(top[2]) + 1.1 * crown, crown)
 
 
 _POTS = (
@@ -312,7 +281,7 @@ FAMILY = Family(
                 "count": Whole(9, 16),
                 "tall": Span(0.4, 0.8),
                 "edged": Choice(True, False),
-                "rim": Choice(*_tones("#b9b46a", "#c9c98a")),
+                "rim": Choice(*tones("#b9b46a", "#c9c98a")),
                 "greens": Choice(DEEP, GREY),
             },
         ),
@@ -357,7 +326,7 @@ FAMILY = Family(
                 "arms": Whole(0, 3),
                 "ribs": Whole(8, 12),
                 "ball": Choice(True, False),
-                "spines": Choice(*_tones("#e6dcc0", "#c9a45c")),
+                "spines": Choice(*tones("#e6dcc0", "#c9a45c")),
                 "greens": Choice(DEEP, GREY, FRESH),
             },
         ),

@@ -229,10 +229,9 @@ def test_joints_sweep_their_range_without_striking(name: str) -> None:
         for part in asset.moving:
             body, number = bodies[f"piece {part.name}"], world.find(f"piece {part.name}")
             assert body.placement.joint is not None
-            doors = doors_before(part.name)
-            for door in asset.moving:
-                if door.name in doors:
-                    world.set_joint(world.find(f"piece {door.name}"), door.limits[1])
+            doors = [one for one in asset.moving if one.name in doors_before(part.name)]
+            for door in doors:
+                world.set_joint(world.find(f"piece {door.name}"), door.limits[1])
             for position in np.linspace(*part.limits, STEPS).tolist():
                 world.set_joint(number, position)
                 there = link_pose(Pose(), body.placement.joint, position)
@@ -241,8 +240,8 @@ def test_joints_sweep_their_range_without_striking(name: str) -> None:
                     if other is not body:
                         assert depth_m(world, body, other) < PENETRATION_M
             world.set_joint(number, 0.0)
-            for name_before in doors:
-                world.set_joint(world.find(f"piece {name_before}"), 0.0)
+            for door in doors:
+                world.set_joint(world.find(f"piece {door.name}"), 0.0)
 
 
 def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
