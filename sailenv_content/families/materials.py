@@ -1,12 +1,13 @@
 """Materials of pieces: woods, metals, fabrics, glass, with density and finish.
 
-A name and a colour in, a `PieceMaterial` out. Fine structures are the catalogue's own patterns.
+A name and a colour in, a `PieceMaterial` out, the same object each time: the families name a
+limited number of them. Fine structures are the catalogue's own patterns.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 
@@ -97,13 +98,13 @@ def _patterned(
     return PieceMaterial(made, PATTERNS[pattern].tile_m, density)
 
 
-@lru_cache(maxsize=256)
+@cache
 def wood(species: str) -> PieceMaterial:
     """Return a wood with its grain along u."""
     return _patterned(species, "grain", _WOODS[species], 0.48, 600.0)
 
 
-@lru_cache(maxsize=256)
+@cache
 def paint(colour: str, roughness: float = 0.42, density: float = 600.0) -> PieceMaterial:
     """Return a lacquer on board, or plastic."""
     made = Material(
@@ -112,7 +113,7 @@ def paint(colour: str, roughness: float = 0.42, density: float = 600.0) -> Piece
     return PieceMaterial(made, 1.0, density)
 
 
-@lru_cache(maxsize=256)
+@cache
 def metal(kind: str, density: float = 2500.0) -> PieceMaterial:
     """Return a metal by name, or one that is powder-coated in ``#rrggbb``.
 
@@ -128,19 +129,19 @@ def metal(kind: str, density: float = 2500.0) -> PieceMaterial:
     return PieceMaterial(made, 1.0, density)
 
 
-@lru_cache(maxsize=256)
+@cache
 def fabric(colour: str) -> PieceMaterial:
     """Return upholstery."""
     return _patterned(f"fabric {colour}", "weave", colour, 0.95, 70.0)
 
 
-@lru_cache(maxsize=256)
+@cache
 def leather(colour: str) -> PieceMaterial:
     """Return leather over foam."""
     return _patterned(f"leather {colour}", "leather", colour, 0.5, 80.0)
 
 
-@lru_cache(maxsize=256)
+@cache
 def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> PieceMaterial:
     """Return clear or tinted glass."""
     made = Material(
@@ -158,7 +159,7 @@ def printed(name: str, picture: Texture) -> PieceMaterial:
     return PieceMaterial(made, 1.0, 700.0)
 
 
-@lru_cache(maxsize=256)
+@cache
 def glow(colour: str, strength: float) -> PieceMaterial:
     """Return a shade or a bulb that glows by the light of its lamp."""
     red, green, blue = colour_of(colour)
