@@ -10,7 +10,7 @@ from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import fabric, metal, paint
 from sailenv_content.families.shaping import cushion, swept, turned
 
-__all__ = ["book_row", "folded", "hung_clothes", "plates", "stores"]
+__all__ = ["CLOTHES", "FRUIT", "book_row", "folded", "hung_clothes", "plates", "stores"]
 
 CLOTHES = (
     "#3a4a63",
@@ -43,6 +43,12 @@ SPINES = (
     "#45322a",
 )
 PAGES = "#e8e0cc"
+FRUIT = {
+    "apple": ("#b5322a", "#7fa04a", "#c9a13a"),
+    "orange": ("#d9762f",),
+    "lemon": ("#e0c53a",),
+}
+"""Colours of each kind, which is its category too."""
 
 
 def folded(b: PieceBuilder, room: Box) -> None:

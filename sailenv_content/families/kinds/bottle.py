@@ -35,11 +35,10 @@ def _bottle(b: PieceBuilder, v: Values) -> None:
         b.form(v.drink, liquid, collides="none")
     if v.label is not None:
         low, high = v.label_at[0] * h, v.label_at[1] * h
-        with b.part("label", "paper"):
-            band(b, v.label, rows, low, high)
-            strip = low + b.between(0.15, 0.6) * (high - low)
-            wide = rows + np.array([0.0004, 0.0])
-            band(b, b.pick(*LABELS), wide, strip, strip + 0.16 * (high - low))
+        band(b, v.label, rows, low, high)
+        strip = low + b.between(0.15, 0.6) * (high - low)
+        wide = rows + np.array([0.0004, 0.0])
+        band(b, b.pick(*LABELS), wide, strip, strip + 0.16 * (high - low))
     if v.cap is not None:
         neck, tall = float(rows[-1, 0]), v.cap_m
         inside = neck - v.wall

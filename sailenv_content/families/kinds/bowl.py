@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
+from sailenv_content.families.contents import FRUIT
 from sailenv_content.families.crockery import CLEAR, GLAZES, band, grained
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.lathe import scaled, smooth_profile, vessel
@@ -13,12 +14,6 @@ from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import swept, turned
 
 __all__ = ["FAMILY"]
-
-FRUIT = {
-    "apple": ("#b5322a", "#7fa04a", "#c9a13a"),
-    "orange": ("#d9762f",),
-    "lemon": ("#e0c53a",),
-}
 
 
 def _fruit(b: PieceBuilder, v: Values, floor: float) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sailenv_content.families.appliances import hollow_case
 from sailenv_content.families.builder import PieceBuilder
-from sailenv_content.families.contents import stores
+from sailenv_content.families.contents import FRUIT, stores
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import handle
 from sailenv_content.families.hollow import Box
@@ -16,25 +16,22 @@ __all__ = ["FAMILY"]
 
 LINER = paint("#eef0f0", 0.3, 300.0)
 WALL_M, DOOR_M = 0.045, 0.055
-FOODS = ("#c9543a", "#7fa04a", "#d9a53a", "#8a3f5a", "#5f8a3f", "#d9762f")
 
 
 def _fruit(b: PieceBuilder, room: Box) -> None:
-    """Lay round fruit and vegetables on the floor of a drawer."""
-    with b.part("food", "orange"):
+    """Lay fruit on the floor of a drawer."""
+    kind = b.pick(*FRUIT)
+    with b.part(kind, kind):
         y = float(room.low[1]) + 0.06
-        colour = b.pick(*FOODS)
         while y < room.high[1] - 0.05:
             for x in (0.35, 0.7):
                 if b.chance(0.75):
                     r = min(b.between(0.028, 0.038), 0.45 * float(room.size[2]))
                     ball = [(0, 0), (0.6 * r, 0.2 * r), (r, r), (0.6 * r, 1.8 * r), (0, 2 * r)]
                     at = (room.low[0] + x * room.size[0], y, room.low[2] + 0.001)
-                    skin = paint(colour, 0.4, 900.0)
+                    skin = paint(b.pick(*FRUIT[kind]), 0.4, 900.0)
                     b.form(skin, turned(ball, segments=14), at, collides="none")
             y += 0.085
-            if b.chance(0.3):
-                colour = b.pick(*FOODS)
 
 
 def _cold_drawer(b: PieceBuilder, name: str, room: Box, *, frozen: bool) -> None:

@@ -22,31 +22,30 @@ def _twigs(b: PieceBuilder, rows: Floats, v: Values) -> None:
     bark = paint(b.pick("#6b5237", "#8c7650", "#4d4a3a"), 0.9)
     seed = paint(b.pick("#c9b896", "#e6ded0", "#9a4a3a", "#7d8a5a"), 0.8)
     bead = turned([(0, 0), (0.006, 0.004), (0.007, 0.009), (0, 0.016)], segments=8)
-    with b.part("twigs", "potted plant"):
-        for number in range(v.twigs):
-            angle, lean = 2.4 * number + b.between(0.0, 1.0), b.between(0.1, 0.35)
-            c, s = np.cos(angle), np.sin(angle)
-            tall = h * b.between(0.7, 1.3)
-            points = [
-                (0.2 * neck * c, 0.2 * neck * s, 0.3 * h),
-                (0.4 * neck * c, 0.4 * neck * s, h),
-                (
-                    0.4 * neck * c + lean * tall * 0.6 * c,
-                    0.4 * neck * s + lean * tall * 0.6 * s,
-                    h + 0.6 * tall,
-                ),
-                (
-                    0.4 * neck * c + lean * tall * 1.3 * c,
-                    0.4 * neck * s + lean * tall * 1.3 * s,
-                    h + tall,
-                ),
-            ]
-            path = curve(points, 12)
-            b.form(bark, swept(path, np.linspace(0.0025, 0.001, 12), sides=5), collides="none")
-            for place in path[6::1]:
-                away = np.array([*b.rng.uniform(-0.02, 0.02, 2), b.between(0.0, 0.02)])
-                turn = (b.between(-40, 40), b.between(-40, 40), 0.0)
-                b.form(seed, bead, place + away, turn=turn, collides="none", volume=2e-7)
+    for number in range(v.twigs):
+        angle, lean = 2.4 * number + b.between(0.0, 1.0), b.between(0.1, 0.35)
+        c, s = np.cos(angle), np.sin(angle)
+        tall = h * b.between(0.7, 1.3)
+        points = [
+            (0.2 * neck * c, 0.2 * neck * s, 0.3 * h),
+            (0.4 * neck * c, 0.4 * neck * s, h),
+            (
+                0.4 * neck * c + lean * tall * 0.6 * c,
+                0.4 * neck * s + lean * tall * 0.6 * s,
+                h + 0.6 * tall,
+            ),
+            (
+                0.4 * neck * c + lean * tall * 1.3 * c,
+                0.4 * neck * s + lean * tall * 1.3 * s,
+                h + tall,
+            ),
+        ]
+        path = curve(points, 12)
+        b.form(bark, swept(path, np.linspace(0.0025, 0.001, 12), sides=5), collides="none")
+        for place in path[6::1]:
+            away = np.array([*b.rng.uniform(-0.02, 0.02, 2), b.between(0.0, 0.02)])
+            turn = (b.between(-40, 40), b.between(-40, 40), 0.0)
+            b.form(seed, bead, place + away, turn=turn, collides="none", volume=2e-7)
 
 
 def _turned(b: PieceBuilder, v: Values) -> None:
