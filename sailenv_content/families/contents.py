@@ -5,12 +5,12 @@ Parts of the piece, each labelled as what it is; they go where their carrier goe
 
 from __future__ import annotations
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.hollow import Box
+from sailenv_content.families.materials import fabric, metal, paint
 from sailenv_content.families.shaping import cushion, swept, turned
-from sailenv_content.families.stuff import fabric, metal, paint
-from sailenv_content.families.workbench import Workbench
 
-__all__ = ["book_row", "folded", "hung_clothes", "plates", "stores"]
+__all__ = ["CLOTHES", "FRUIT", "book_row", "folded", "hung_clothes", "plates", "stores"]
 
 CLOTHES = (
     "#3a4a63",
@@ -43,9 +43,15 @@ SPINES = (
     "#45322a",
 )
 PAGES = "#e8e0cc"
+FRUIT = {
+    "apple": ("#b5322a", "#7fa04a", "#c9a13a"),
+    "orange": ("#d9762f",),
+    "lemon": ("#e0c53a",),
+}
+"""Colours of each kind, which is its category too."""
 
 
-def folded(b: Workbench, room: Box) -> None:
+def folded(b: PieceBuilder, room: Box) -> None:
     """Lay piles of folded clothes into a hollow."""
     size = room.size
     if size[2] < 0.03 or size[0] < 0.12 or size[1] < 0.12:
@@ -74,7 +80,7 @@ def folded(b: Workbench, room: Box) -> None:
                     break
 
 
-def hung_clothes(b: Workbench, room: Box) -> None:
+def hung_clothes(b: PieceBuilder, room: Box) -> None:
     """Hang clothes on a rail below the top of a hollow."""
     size, middle = room.size, room.middle
     z = room.high[2] - 0.06
@@ -100,7 +106,7 @@ def hung_clothes(b: Workbench, room: Box) -> None:
             y += thick + b.between(0.01, 0.06)
 
 
-def book_row(b: Workbench, room: Box, *, full: float = 1.0, name: str = "books") -> None:
+def book_row(b: PieceBuilder, room: Box, *, full: float = 1.0, name: str = "books") -> None:
     """Stand books side by side on a hollow's floor; `full` is the share of it that they fill."""
     size = room.size
     y, stop = room.low[1] + 0.004, room.low[1] + full * size[1] - 0.006
@@ -144,7 +150,7 @@ def book_row(b: Workbench, room: Box, *, full: float = 1.0, name: str = "books")
             )
 
 
-def plates(b: Workbench, room: Box) -> None:
+def plates(b: PieceBuilder, room: Box) -> None:
     """Stand piles of plates and rows of cups on the floor of a hollow."""
     y = room.low[1] + 0.13
     while y < room.high[1] - 0.11:
@@ -183,7 +189,7 @@ def plates(b: Workbench, room: Box) -> None:
         y += 0.27
 
 
-def stores(b: Workbench, room: Box, *, cold: bool = False) -> None:
+def stores(b: PieceBuilder, room: Box, *, cold: bool = False) -> None:
     """Stand groceries on the floor of a hollow: jars, bottles, cartons, boxes."""
     y = room.low[1] + 0.06
     while y < room.high[1] - 0.05:
@@ -215,8 +221,8 @@ def stores(b: Workbench, room: Box, *, cold: bool = False) -> None:
                     (0.0, h),
                 ]
                 shade = b.pick("#2f5a34", "#5a3a1e", "#c8d3c4", "#d8d0a0")
-                stuff = paint("#f2f0ea", 0.3) if cold and b.chance(0.4) else paint(shade, 0.1)
-                b.form(stuff, turned(rows, segments=16), at, collides="none")
+                material = paint("#f2f0ea", 0.3) if cold and b.chance(0.4) else paint(shade, 0.1)
+                b.form(material, turned(rows, segments=16), at, collides="none")
         elif kind in ("carton", "box") and tall > 0.12:
             h = min(tall, b.between(0.14, 0.24))
             with b.part("carton", "carton"):

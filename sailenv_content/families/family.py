@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.parameters import Values
-from sailenv_content.families.workbench import Workbench
 
 __all__ = ["Family", "Style"]
 
@@ -19,7 +19,7 @@ class Style:
     Attributes
     ----------
     make : callable
-        ``make(bench, values)`` puts the piece together: x to its front, z up, the origin at the
+        ``make(builder, values)`` puts the piece together: x to its front, z up, the origin at the
         middle of its base (on a wall: at the lower middle of its back, below a
         ceiling: at its lowest point). It may raise `Unfit`.
     parameters : mapping
@@ -28,7 +28,7 @@ class Style:
         Empty takes the family's.
     """
 
-    make: Callable[[Workbench, Values], None]
+    make: Callable[[PieceBuilder, Values], None]
     parameters: Mapping[str, Any] = field(default_factory=dict)
     category: str = ""
 

@@ -1,6 +1,7 @@
 """Constructions of several families: legs, carcasses, shelves.
 
-A `Workbench` and measures in [m] in; forms are added where the bench works. The front is at +x.
+A `PieceBuilder` and measures in [m] in; forms are added to the part that it is at. The front is
+at +x.
 """
 
 from __future__ import annotations
@@ -9,12 +10,12 @@ from typing import Literal
 
 import numpy as np
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.hollow import Box
+from sailenv_content.families.materials import PieceMaterial
 from sailenv_content.families.shaping import swept, turned
-from sailenv_content.families.stuff import Stuff
-from sailenv_content.families.workbench import Workbench
 
-__all__ = ["carcass", "four_legs", "leg", "shelf"]
+__all__ = ["carcass", "four_legs", "leg", "open_box", "shelf"]
 
 
 BOARD_M = 0.018
@@ -24,8 +25,8 @@ LegKind = Literal["square", "tapered", "round", "turned", "splayed", "hairpin", 
 
 
 def leg(
-    b: Workbench,
-    stuff: Stuff,
+    b: PieceBuilder,
+    material: PieceMaterial,
     kind: LegKind,
     x: float,
     y: float,
@@ -40,12 +41,12 @@ def leg(
     foot, top = np.array([x + out[0], y + out[1], z]), np.array([x, y, z + height])
     middle = (foot + top) / 2.0
     if kind == "block":
-        b.box(stuff, (width, width, height), middle, bevel=0.003)
+        b.box(material, (width, width, height), middle, bevel=0.003)
     elif kind in ("square", "tapered"):
         taper = 1.0 if kind == "square" else 1.75
         foot_m = width / taper
         b.box(
-            stuff,
+            material,
             (foot_m, foot_m, height),
             middle,
             bevel=0.003,
@@ -55,9 +56,9 @@ def leg(
     elif kind == "hairpin":
         for side in (-1.0, 1.0):
             start = top + np.array([0.0, side * 0.055, 0.0])
-            b.form(stuff, swept([start, foot], 0.006, sides=8))
+            b.form(material, swept([start, foot], 0.006, sides=8))
     elif kind == "metal":
-        b.form(stuff, swept([foot, top], width / 2.0, sides=14))
+        b.form(material, swept([foot, top], width / 2.0, sides=14))
     elif kind == "turned":
         r = width / 2.0
         rows = [
@@ -75,16 +76,16 @@ def leg(
             (0.0, 1.0),
         ]
         profile = [(r * a, z + height * t) for a, t in rows]
-        b.form(stuff, turned(profile, segments=18, tile_m=stuff.tile_m), (x, y, 0.0))
+        b.form(material, turned(profile, segments=18, tile_m=material.tile_m), (x, y, 0.0))
     else:
         thin = 0.55 if kind == "splayed" else 0.8
         radii = np.array([thin, 1.0]) * width / 2.0
-        b.form(stuff, swept([foot, top], radii, sides=16, tile_m=stuff.tile_m))
+        b.form(material, swept([foot, top], radii, sides=16, tile_m=material.tile_m))
 
 
 def four_legs(
-    b: Workbench,
-    stuff: Stuff,
+    b: PieceBuilder,
+    material: PieceMaterial,
     kind: LegKind,
     depth: float,
     width: float,
@@ -99,19 +100,20 @@ def four_legs(
     for sx in (-1.0, 1.0):
         for sy in (-1.0, 1.0):
             x, y = sx * (depth / 2.0 - inset), sy * (width / 2.0 - inset)
-            leg(b, stuff, kind, x, y, height, thick, z=z, splay=splay)
+            leg(b, material, kind, x, y, height, thick, z=z, splay=splay)
 
 
 def carcass(
-    b: Workbench,
-    stuff: Stuff,
+    b: PieceBuilder,
+    material: PieceMaterial,
     inside: Box,
     *,
     board: float = BOARD_M,
-    back: Stuff | None = None,
-    top: Stuff | None = None,
+    back: PieceMaterial | None = None,
+    top: PieceMaterial | None = None,
     overhang: float = 0.0,
     has_back: bool = True,
+    has_top: bool = True,
 ) -> None:
     """Add sides, bottom, top and back around a hollow that is open at its front."""
     size, middle = inside.size, inside.middle
@@ -119,14 +121,15 @@ def carcass(
     x = middle[0] - BACK_M / 2.0
     for sign in (-1.0, 1.0):
         at = (x, middle[1] + sign * (size[1] + board) / 2.0, middle[2])
-        b.box(stuff, (depth, board, size[2]), at)
+        b.box(material, (depth, board, size[2]), at)
     whole = size[1] + 2.0 * board
-    b.box(stuff, (depth, whole, board), (x, middle[1], inside.low[2] - board / 2.0))
-    lid = (depth + overhang, whole + 2.0 * overhang, board)
-    b.box(top or stuff, lid, (x + overhang / 2.0, middle[1], inside.high[2] + board / 2.0))
+    b.box(material, (depth, whole, board), (x, middle[1], inside.low[2] - board / 2.0))
+    if has_top:
+        lid = (depth + overhang, whole + 2.0 * overhang, board)
+        b.box(top or material, lid, (x + overhang / 2.0, middle[1], inside.high[2] + board / 2.0))
     if has_back:
         b.box(
-            back or stuff,
+            back or material,
             (BACK_M, size[1], size[2]),
             (inside.low[0] - BACK_M / 2.0, middle[1], middle[2]),
             bevel=0.0005,
@@ -134,8 +137,8 @@ def carcass(
 
 
 def shelf(
-    b: Workbench,
-    stuff: Stuff,
+    b: PieceBuilder,
+    material: PieceMaterial,
     inside: Box,
     z: float,
     *,
@@ -145,4 +148,46 @@ def shelf(
     """Add a shelf whose upper side is at a height, in a hollow."""
     size, middle = inside.size, inside.middle
     at = (middle[0] - setback / 2.0, middle[1], z - thick / 2.0)
-    b.box(stuff, (size[0] - setback, size[1] - 0.001, thick), at)
+    b.box(material, (size[0] - setback, size[1] - 0.001, thick), at)
+
+
+def open_box(
+    b: PieceBuilder,
+    material: PieceMaterial,
+    outer: Box,
+    wall: float,
+    *,
+    liner: PieceMaterial | None = None,
+) -> Box:
+    """Add a floor and four sides around a hollow that is open at its top; return it."""
+    size, middle = outer.size, outer.middle
+    bevel = min(0.003, 0.3 * wall)
+    b.box(
+        material,
+        (size[0], size[1], wall),
+        (middle[0], middle[1], outer.low[2] + wall / 2),
+        bevel=bevel,
+    )
+    tall, z = size[2] - wall, middle[2] + wall / 2
+    for sign in (-1.0, 1.0):
+        b.box(
+            material,
+            (wall, size[1], tall),
+            (middle[0] + sign * (size[0] - wall) / 2, middle[1], z),
+            bevel=bevel,
+        )
+        b.box(
+            material,
+            (size[0] - 2 * wall, wall, tall),
+            (middle[0], middle[1] + sign * (size[1] - wall) / 2, z),
+            bevel=bevel,
+        )
+    room = outer.within((wall, wall, wall), (wall, wall, 0.0))
+    if liner is not None:
+        b.box(
+            liner,
+            (room.size[0], room.size[1], 0.003),
+            (middle[0], middle[1], room.low[2] + 0.0015),
+            collides=False,
+        )
+    return room

@@ -8,10 +8,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from sailenv_content.families.builder import Component, Joint, PieceBuilder, Unfit
 from sailenv_content.families.family import Family
 from sailenv_content.families.names import PieceName
 from sailenv_content.families.parameters import Values, drawn
-from sailenv_content.families.workbench import Joint, Unfit, Work, Workbench
 from sailenv_ros.assets.solids import joined
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.labels import PART_MARK
@@ -60,10 +60,10 @@ def make_piece(family: Family, name: PieceName) -> Piece:
     for attempt in range(MAX_DRAWS):
         key = [zlib.crc32(owner.encode()), name.seed, attempt]
         values = drawn(owner, style.parameters, np.random.default_rng(key))
-        bench = Workbench(np.random.default_rng([*key, 1]))
+        builder = PieceBuilder(np.random.default_rng([*key, 1]))
         try:
-            style.make(bench, values)
-            asset = _asset(family, name, bench)
+            style.make(builder, values)
+            asset = _asset(family, name, builder)
             _check(family, asset)
         except Unfit as problem:
             rejected.append(str(problem))
@@ -85,24 +85,23 @@ def _check(family: Family, asset: Asset) -> None:
             raise Unfit(f"the {part.name} cannot move")
 
 
-def _asset(family: Family, name: PieceName, bench: Workbench) -> Asset:
-    works = [work for work in bench.works if work.meshes]
+def _asset(family: Family, name: PieceName, builder: PieceBuilder) -> Asset:
+    components = [component for component in builder.components if component.meshes]
     category = family.styles[name.style].category or family.category
-    whole = _compound(category, name.whole, _title(name), works, bench)
-    movers = [work for work in works if work.joint is not None]
+    movers = [component for component in components if component.joint is not None]
+    groups = [[one for one in components if _belongs(one, mover)] for mover in movers]
+    for group in groups:
+        _weigh(group)
+    title = _title(name)
+    whole = _compound(category, name.whole, title, components, builder)
     if not movers:
         return whole[0]
-    taken = {work.name for work in movers}
-
-    def belongs(work: Work, root: str) -> bool:
-        return work.name == root or work.name.startswith(root + PART_MARK)
-
-    still = [work for work in works if not any(belongs(work, root) for root in taken)]
+    still = [one for one in components if not any(_belongs(one, mover) for mover in movers)]
     models = whole[1]
-    body, _ = _compound(category, name.whole, _title(name), still, bench, models)
+    body, _ = _compound(category, name.whole, title, still, builder, models)
     moving = tuple(
-        _moving(work, name, [one for one in works if belongs(one, work.name)], bench, models)
-        for work in movers
+        _moving(mover, name, group, builder, models)
+        for mover, group in zip(movers, groups, strict=True)
     )
     asset = whole[0]
     return Asset(
@@ -121,22 +120,44 @@ def _asset(family: Family, name: PieceName, bench: Workbench) -> Asset:
     )
 
 
+def _belongs(component: Component, mover: Component) -> bool:
+    return component.name == mover.name or component.name.startswith(mover.name + PART_MARK)
+
+
+def _weigh(group: list[Component]) -> None:
+    """Make what moves as heavy as physics needs; the whole is the sum of its bodies."""
+    share = LEAST_MASS_KG / max(sum(component.mass_kg for component in group), 1e-9)
+    for component in group if share > 1.0 else ():
+        component.mass_kg *= share
+        component.moment = component.moment * share
+
+
 Drawn = dict[str, list[ModelPart]]
-"""Meshes of each work, by its name."""
+"""Meshes of each component, by its name."""
 
 
 def _moving(
-    work: Work, name: PieceName, works: list[Work], bench: Workbench, models: Drawn
+    component: Component,
+    name: PieceName,
+    components: list[Component],
+    builder: PieceBuilder,
+    models: Drawn,
 ) -> MovingPart:
-    assert work.joint is not None
-    joint: Joint = work.joint
-    title = f"{_title(name)}, {work.name}"
-    root = len(work.name) + 1
+    assert component.joint is not None
+    joint: Joint = component.joint
+    title = f"{_title(name)}, {component.name}"
+    root = len(component.name) + 1
     asset, _ = _compound(
-        work.category, name.of_part(work.name), title, works, bench, models, root=root
+        component.category,
+        name.of_part(component.name),
+        title,
+        components,
+        builder,
+        models,
+        root=root,
     )
     return MovingPart(
-        name=work.name,
+        name=component.name,
         asset=asset,
         type=joint.type,
         axis=joint.axis,
@@ -152,46 +173,52 @@ def _compound(
     category: str,
     name: str,
     title: str,
-    works: list[Work],
-    bench: Workbench,
+    components: list[Component],
+    builder: PieceBuilder,
     models: Drawn | None = None,
     *,
     root: int = 0,
 ) -> tuple[Asset, Drawn]:
-    """Return one body of some works, the first of which is its own, the others its parts."""
-    models = {work.name: _drawn(work) for work in works} if models is None else models
-    own = works[0].name
+    """Return one body of some components, the first of which is its own, the others its parts."""
+    models = (
+        {component.name: _drawn(component) for component in components}
+        if models is None
+        else models
+    )
+    own = components[0].name
     meshes: list[ModelPart] = []
     parts: list[AssetPart] = []
-    for work in works:
+    for component in components:
         first = len(meshes)
-        meshes += models[work.name]
-        if work.name != own:
+        meshes += models[component.name]
+        if component.name != own:
             places = tuple(range(first, len(meshes)))
-            parts.append(AssetPart(name=work.name[root:], category=work.category, meshes=places))
-    mass = max(sum(work.mass_kg for work in works), LEAST_MASS_KG)
-    x, y, z = (sum((work.moment for work in works), np.zeros(3)) / mass).tolist()
+            parts.append(
+                AssetPart(name=component.name[root:], category=component.category, meshes=places)
+            )
+    mass = max(sum(component.mass_kg for component in components), LEAST_MASS_KG)
+    x, y, z = (sum((component.moment for component in components), np.zeros(3)) / mass).tolist()
     asset = Asset(
         name=name,
         display_name=title,
         category=category,
         model=Model(name=name, parts=tuple(meshes)),
-        collision=tuple(shape for work in works for shape in work.shapes),
+        collision=tuple(shape for component in components for shape in component.shapes),
         mass_kg=mass,
         centre_of_mass_m=(x, y, z),
         tags=("from a seed",),
-        keypoints=() if root else tuple(bench.keypoints.items()),
+        keypoints=() if root else tuple(builder.keypoints.items()),
         parts=tuple(parts),
         opens=bool(root),
     )
     return asset, models
 
 
-def _drawn(work: Work) -> list[ModelPart]:
-    """Return the meshes of a work, one for each material."""
+def _drawn(component: Component) -> list[ModelPart]:
+    """Return the meshes of a component, one for each material."""
     by_material: dict[int, tuple[Material, list[Mesh]]] = {}
-    for stuff, mesh in work.meshes:
-        by_material.setdefault(id(stuff.material), (stuff.material, []))[1].append(mesh)
+    for material, mesh in component.meshes:
+        by_material.setdefault(id(material.surface), (material.surface, []))[1].append(mesh)
     return [ModelPart(mesh=joined(all_), material=one) for one, all_ in by_material.values()]
 
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from sailenv_content.families.builder import PieceBuilder
+from sailenv_content.families.materials import FABRICS, PieceMaterial
 from sailenv_content.families.parameters import Values
 from sailenv_content.families.shaping import cushion
-from sailenv_content.families.stuff import FABRICS, Stuff
-from sailenv_content.families.workbench import Workbench
 
 __all__ = ["loose_cushions", "pad", "seat", "width_of"]
 
 
 def pad(
-    b: Workbench,
-    stuff: Stuff,
+    b: PieceBuilder,
+    material: PieceMaterial,
     size: tuple[float, float, float],
     at: tuple[float, float, float],
     *,
@@ -23,8 +23,8 @@ def pad(
     collides: bool = True,
 ) -> None:
     """Add a cushion that collides as its box."""
-    mesh = cushion(size, radius=radius, puff=puff, tile_m=stuff.tile_m, steps=8, pinch=pinch)
-    b.form(stuff, mesh, at, turn=turn, collides="none")
+    mesh = cushion(size, radius=radius, puff=puff, tile_m=material.tile_m, steps=8, pinch=pinch)
+    b.form(material, mesh, at, turn=turn, collides="none")
     if collides:
         b.collide(size, at, turn)
 
@@ -34,7 +34,7 @@ def width_of(v: Values) -> float:
     return float(v.seats * v.seat + 2.0 * v.arm)
 
 
-def seat(b: Workbench, v: Values, width: float, depth: float, base: float) -> None:
+def seat(b: PieceBuilder, v: Values, width: float, depth: float, base: float) -> None:
     """Add base, back, seat and back cushions between arms."""
     inner = width - 2.0 * v.arm
     top = v.height
@@ -71,7 +71,7 @@ def seat(b: Workbench, v: Values, width: float, depth: float, base: float) -> No
             )
 
 
-def loose_cushions(b: Workbench, v: Values, width: float, depth: float) -> None:
+def loose_cushions(b: PieceBuilder, v: Values, width: float, depth: float) -> None:
     """Throw one or two small cushions into the corners."""
     for sign in (-1.0, 1.0):
         if b.chance(v.loose):

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import four_legs, leg
 from sailenv_content.families.kinds import sofa
+from sailenv_content.families.materials import FABRICS, LEATHERS, WOODS, metal
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import ribbon, swept
-from sailenv_content.families.stuff import FABRICS, LEATHERS, WOODS, metal
 from sailenv_content.families.upholstery import pad
-from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import curve, loft, rectangle
 from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
 
 __all__ = ["FAMILY"]
 
 
-def _wing(b: Workbench, v: Values) -> None:
+def _wing(b: PieceBuilder, v: Values) -> None:
     """Make a tall back with wings beside the head."""
     d, w, base = v.depth, v.seat + 2 * v.arm, v.legs
     pad(
@@ -62,7 +62,7 @@ def _wing(b: Workbench, v: Values) -> None:
     four_legs(b, v.frame, v.leg, d - 0.12, w - 0.1, base + 0.01, 0.042)
 
 
-def _tub(b: Workbench, v: Values) -> None:
+def _tub(b: PieceBuilder, v: Values) -> None:
     """Make one curved back that becomes the arms."""
     d, w, base = v.depth * 0.9, v.seat + 0.22, v.legs
     turns = np.linspace(0.32 * np.pi - np.pi / 2, 1.68 * np.pi - np.pi / 2, 27)
@@ -107,7 +107,7 @@ def _tub(b: Workbench, v: Values) -> None:
             leg(b, v.frame, v.leg, sx * d * 0.3, sy * w * 0.3, base + 0.03, 0.036, splay=0.03)
 
 
-def _lounge(b: Workbench, v: Values) -> None:
+def _lounge(b: PieceBuilder, v: Values) -> None:
     """Make a bent frame that one sees, seat and back cushions in it."""
     d, w, h = v.depth, v.seat + 0.12, v.height - 0.1
     for sy in (-1.0, 1.0):
@@ -158,7 +158,7 @@ def _lounge(b: Workbench, v: Values) -> None:
         )
 
 
-def _shell(b: Workbench, v: Values) -> None:
+def _shell(b: PieceBuilder, v: Values) -> None:
     """Make one wide shell with cushions, on a star or a wire base."""
     d, w, h = v.depth, v.seat + 0.16, v.height - 0.06
     line = curve(

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.contents import book_row, stores
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, door
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import carcass
+from sailenv_content.families.materials import WOODS, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
-from sailenv_content.families.stuff import WOODS, metal, paint
-from sailenv_content.families.workbench import Workbench
 
 __all__ = ["FAMILY"]
 
@@ -21,13 +21,13 @@ def _hollow(v: Values, base: float) -> Box:
     return Box(low, (v.depth / 2, v.width / 2 - BOARD_M, v.height - BOARD_M))
 
 
-def _shelved(b: Workbench, v: Values, room: Box, rows: int) -> None:
+def _shelved(b: PieceBuilder, v: Values, room: Box, rows: int) -> None:
     """Divide a hollow by shelves, and stand books on each."""
     for row in room.rows([1.0] * rows, BOARD_M):
         if row.low[2] > room.low[2] + 0.01:
             z = float(row.low[2]) - BOARD_M / 2
             b.box(
-                v.stuff,
+                v.material,
                 (room.size[0] - 0.004, room.size[1] - 0.001, BOARD_M),
                 (room.middle[0] - 0.002, room.middle[1], z),
             )
@@ -35,23 +35,23 @@ def _shelved(b: Workbench, v: Values, room: Box, rows: int) -> None:
             book_row(b, row, full=b.between(0.45, 1.0))
 
 
-def _closed(b: Workbench, v: Values) -> None:
+def _closed(b: PieceBuilder, v: Values) -> None:
     """Make a carcass on a plinth, full of shelves."""
     inside = _hollow(v, 0.06)
-    carcass(b, v.stuff, inside, board=BOARD_M)
-    b.box(v.stuff, (v.depth - 0.04, v.width - 0.01, 0.06), (-0.015, 0.0, 0.03))
+    carcass(b, v.material, inside, board=BOARD_M)
+    b.box(v.material, (v.depth - 0.04, v.width - 0.01, 0.06), (-0.015, 0.0, 0.03))
     _shelved(b, v, inside, v.rows)
 
 
-def _cubes(b: Workbench, v: Values) -> None:
+def _cubes(b: PieceBuilder, v: Values) -> None:
     """Make a grid of square rooms."""
     inside = _hollow(v, 0.0)
-    carcass(b, v.stuff, inside, board=BOARD_M, has_back=False)
+    carcass(b, v.material, inside, board=BOARD_M, has_back=False)
     rooms = inside.columns([1.0] * v.columns, BOARD_M)
     for room in rooms[1:]:
         y = float(room.low[1]) - BOARD_M / 2
         b.box(
-            v.stuff,
+            v.material,
             (inside.size[0], BOARD_M, inside.size[2]),
             (inside.middle[0], y, inside.middle[2]),
         )
@@ -59,7 +59,7 @@ def _cubes(b: Workbench, v: Values) -> None:
         _shelved(b, v, room, v.rows)
 
 
-def _industrial(b: Workbench, v: Values) -> None:
+def _industrial(b: PieceBuilder, v: Values) -> None:
     """Make shelves of wood in a frame of metal, open at all sides."""
     d, w, h = v.depth, v.width, v.height
     for sx in (-1.0, 1.0):
@@ -68,7 +68,7 @@ def _industrial(b: Workbench, v: Values) -> None:
     step = (h - 0.12) / (v.rows - 1)
     for number in range(v.rows):
         z = 0.1 + number * step
-        b.box(v.stuff, (d - 0.005, w - 0.052, 0.024), (0.0, 0.0, z))
+        b.box(v.material, (d - 0.005, w - 0.052, 0.024), (0.0, 0.0, z))
         for sy in (-1.0, 1.0):
             b.box(v.frame, (d - 0.05, 0.02, 0.02), (0.0, sy * (w / 2 - 0.0125), z))
         if number < v.rows - 1:
@@ -79,14 +79,14 @@ def _industrial(b: Workbench, v: Values) -> None:
             book_row(b, row, full=b.between(0.3, 0.85))
 
 
-def _with_doors(b: Workbench, v: Values) -> None:
+def _with_doors(b: PieceBuilder, v: Values) -> None:
     """Make shelves above, and two doors in front of stores below."""
     inside = _hollow(v, 0.06)
-    carcass(b, v.stuff, inside, board=BOARD_M)
-    b.box(v.stuff, (v.depth - 0.04, v.width - 0.01, 0.06), (-0.015, 0.0, 0.03))
+    carcass(b, v.material, inside, board=BOARD_M)
+    b.box(v.material, (v.depth - 0.04, v.width - 0.01, 0.06), (-0.015, 0.0, 0.03))
     split = 0.06 + BOARD_M + v.low
     front = float(inside.high[0]) - 0.022
-    b.box(v.stuff, (inside.size[0], inside.size[1], BOARD_M), (inside.middle[0], 0.0, split))
+    b.box(v.material, (inside.size[0], inside.size[1], BOARD_M), (inside.middle[0], 0.0, split))
     below = Box(inside.low, (front, inside.high[1], split - BOARD_M / 2))
     stores(b, below.within((0.05, 0.02, 0.0), (0.05, 0.02, 0.1)))
     _shelved(
@@ -107,7 +107,7 @@ _SHARED = {
     "width": Span(0.7, 1.1),
     "height": Span(1.5, 2.1),
     "rows": Whole(4, 6),
-    "stuff": Choice(*WOODS, paint("#e9e6df"), paint("#33373b"), paint("#8c9a86")),
+    "material": Choice(*WOODS, paint("#e9e6df"), paint("#33373b"), paint("#8c9a86")),
 }
 
 FAMILY = Family(

@@ -4,32 +4,32 @@ from __future__ import annotations
 
 import numpy as np
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import four_legs, leg
+from sailenv_content.families.materials import FABRICS, LEATHERS, WOODS, metal, paint, wood
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
 from sailenv_content.families.shaping import cushion, extruded, ribbon, swept
-from sailenv_content.families.stuff import FABRICS, LEATHERS, WOODS, metal, paint, wood
-from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import curve, rectangle
 
 __all__ = ["FAMILY"]
 
 
-def _seat_pad(b: Workbench, v: Values, z: float, d: float, w: float) -> None:
+def _seat_pad(b: PieceBuilder, v: Values, z: float, d: float, w: float) -> None:
     if v.pad is not None:
         mesh = cushion((d, w, 0.03), radius=0.014, puff=0.012, tile_m=v.pad.tile_m)
         b.form(v.pad, mesh, (0.0, 0.0, z + 0.013))
 
 
-def _frame(b: Workbench, v: Values, back_h: float) -> tuple[float, float]:
+def _frame(b: PieceBuilder, v: Values, back_h: float) -> tuple[float, float]:
     """Add four legs with rails below the seat; the back ones go up and lean. Returns x and lean."""
     d, w, h, t = v.depth, v.width, v.height, v.thick
     front_x, back_x = d / 2 - t / 2, -d / 2 + t / 2
     for sy in (-1.0, 1.0):
         y = sy * (w / 2 - t / 2)
-        leg(b, v.stuff, v.leg, front_x, y, h - 0.02, t)
+        leg(b, v.material, v.leg, front_x, y, h - 0.02, t)
         b.box(
-            v.stuff,
+            v.material,
             (t * 0.8, t * 0.8, h),
             (back_x - 0.02, y, h / 2),
             top=(1.25, 1.25),
@@ -37,22 +37,24 @@ def _frame(b: Workbench, v: Values, back_h: float) -> tuple[float, float]:
             bevel=0.004,
         )
         b.box(
-            v.stuff,
+            v.material,
             (t, t, back_h),
             (back_x - v.lean / 2, y, h + back_h / 2),
             top=(0.8, 0.8),
             lean=(-v.lean, 0.0),
             bevel=0.004,
         )
-        b.box(v.stuff, (d - 2 * t, 0.02, 0.055), (0.0, y, h - 0.05))
+        b.box(v.material, (d - 2 * t, 0.02, 0.055), (0.0, y, h - 0.05))
     for x in (front_x, back_x):
-        b.box(v.stuff, (0.02, w - 2 * t, 0.055), (x, 0.0, h - 0.05))
+        b.box(v.material, (0.02, w - 2 * t, 0.055), (x, 0.0, h - 0.05))
     outline = rectangle(w + 0.01, d + 0.01, 0.025)
-    b.form(v.stuff, extruded(outline, 0.02, bevel=0.006, tile_m=v.stuff.tile_m), (0, 0, h - 0.02))
+    b.form(
+        v.material, extruded(outline, 0.02, bevel=0.006, tile_m=v.material.tile_m), (0, 0, h - 0.02)
+    )
     return back_x, v.lean
 
 
-def _dining(b: Workbench, v: Values) -> None:
+def _dining(b: PieceBuilder, v: Values) -> None:
     """Make upright slats, or a ladder of cross pieces."""
     back_h = v.back
     x, lean = _frame(b, v, back_h)
@@ -62,19 +64,19 @@ def _dining(b: Workbench, v: Values) -> None:
         return x - lean * share
 
     b.box(
-        v.stuff,
+        v.material,
         (0.022, w, 0.075),
         (at(0.93), 0.0, h + 0.92 * back_h),
         turn=(0, -lean * 120, 0),
         bevel=0.006,
     )
     if v.kind == "slats":
-        b.box(v.stuff, (0.02, w, 0.035), (at(0.2), 0.0, h + 0.2 * back_h))
+        b.box(v.material, (0.02, w, 0.035), (at(0.2), 0.0, h + 0.2 * back_h))
         low, high = 0.2 * back_h, 0.9 * back_h
         tilt = -np.degrees(np.arctan(lean / back_h))
         for y in np.linspace(-1, 1, v.count + 2)[1:-1] * w / 2:
             b.box(
-                v.stuff,
+                v.material,
                 (0.012, 0.03, high - low),
                 (at(0.55), y, h + (low + high) / 2),
                 turn=(0, tilt, 0),
@@ -82,7 +84,7 @@ def _dining(b: Workbench, v: Values) -> None:
     else:
         for share in np.linspace(0.25, 0.68, max(2, v.count - 2)):
             b.box(
-                v.stuff,
+                v.material,
                 (0.018, w, 0.05),
                 (at(share), 0.0, h + share * back_h),
                 turn=(0, -lean * 120, 0),
@@ -91,26 +93,32 @@ def _dining(b: Workbench, v: Values) -> None:
     if v.rungs:
         for sy in (-1.0, 1.0):
             b.box(
-                v.stuff, (v.depth - 0.05, 0.016, 0.022), (0, sy * (v.width / 2 - v.thick / 2), 0.16)
+                v.material,
+                (v.depth - 0.05, 0.016, 0.022),
+                (0, sy * (v.width / 2 - v.thick / 2), 0.16),
             )
-        b.box(v.stuff, (0.016, v.width - 0.05, 0.022), (0.02, 0, 0.16))
+        b.box(v.material, (0.016, v.width - 0.05, 0.022), (0.02, 0, 0.16))
     _seat_pad(b, v, h, v.depth - 0.03, v.width - 0.03)
 
 
-def _spindle(b: Workbench, v: Values) -> None:
+def _spindle(b: PieceBuilder, v: Values) -> None:
     """Make a solid seat with splayed turned legs and a bow of thin spindles."""
     d, w, h = v.depth, v.width, v.height
     outline = rectangle(w, d, 0.17, steps=10)
-    b.form(v.stuff, extruded(outline, 0.035, bevel=0.014, tile_m=v.stuff.tile_m), (0, 0, h - 0.035))
+    b.form(
+        v.material,
+        extruded(outline, 0.035, bevel=0.014, tile_m=v.material.tile_m),
+        (0, 0, h - 0.035),
+    )
     for sx in (-1.0, 1.0):
         for sy in (-1.0, 1.0):
-            leg(b, v.stuff, v.leg, sx * d * 0.3, sy * w * 0.3, h - 0.03, 0.04, splay=0.055)
+            leg(b, v.material, v.leg, sx * d * 0.3, sy * w * 0.3, h - 0.03, 0.04, splay=0.055)
     for sy in (-1.0, 1.0):
         b.form(
-            v.stuff,
+            v.material,
             swept([(d * 0.36, sy * w * 0.36, 0.17), (-d * 0.36, sy * w * 0.36, 0.17)], 0.009),
         )
-    b.form(v.stuff, swept([(0, -w * 0.36, 0.17), (0, w * 0.36, 0.17)], 0.009))
+    b.form(v.material, swept([(0, -w * 0.36, 0.17), (0, w * 0.36, 0.17)], 0.009))
     turns = np.linspace(0.0, np.pi, 15)
     half, tall = w * 0.43, v.back
     if v.kind == "bow":
@@ -119,7 +127,7 @@ def _spindle(b: Workbench, v: Values) -> None:
         ys, zs = np.linspace(-half, half, 15), np.full(15, h + tall * 0.92)
     xs = -d * 0.36 - 0.16 * np.clip(zs - h, 0, None) / tall * 0.9 - 0.02 * np.sin(turns)
     rail = np.stack([xs, ys, zs], -1)
-    b.form(v.stuff, swept(rail, 0.012 if v.kind == "bow" else 0.016, sides=12), collides="none")
+    b.form(v.material, swept(rail, 0.012 if v.kind == "bow" else 0.016, sides=12), collides="none")
     b.collide((0.03, 2 * half, tall), (-d * 0.36 - 0.08, 0, h + tall / 2), (0, -8.0, 0))
     inner = np.linspace(-1, 1, v.count + 2)[1:-1]
     for share in inner:
@@ -127,14 +135,14 @@ def _spindle(b: Workbench, v: Values) -> None:
         foot = (-d * 0.38, y * 0.85, h - 0.01)
         place = int(np.argmin(np.abs(ys - y) + (zs < h + 0.4 * tall) * 9.0))
         head = (float(xs[place]), float(ys[place]), float(zs[place]))
-        b.form(v.stuff, swept([foot, head], (0.008, 0.006), sides=8), collides="none")
+        b.form(v.material, swept([foot, head], (0.008, 0.006), sides=8), collides="none")
     if v.kind == "comb":
         for sy in (-1.0, 1.0):
             foot, head = (-d * 0.36, sy * half * 0.9, h - 0.01), (xs[0], sy * half * 0.95, zs[0])
-            b.form(v.stuff, swept([foot, head], 0.013, sides=10), collides="none")
+            b.form(v.material, swept([foot, head], 0.013, sides=10), collides="none")
 
 
-def _shell(b: Workbench, v: Values) -> None:
+def _shell(b: PieceBuilder, v: Values) -> None:
     """Make one bent shell on thin legs."""
     d, w, h = v.depth, v.width, v.height
     line = curve(
@@ -153,9 +161,9 @@ def _shell(b: Workbench, v: Values) -> None:
         0.9 + 0.1 * np.sin(np.pi * share) - v.waist * np.exp(-(((share - 0.55) / 0.12) ** 2))
     )
     mesh = ribbon(
-        line[::-1], widths[::-1], 0.011, dish=-v.dish, round_m=v.round, tile_m=v.stuff.tile_m
+        line[::-1], widths[::-1], 0.011, dish=-v.dish, round_m=v.round, tile_m=v.material.tile_m
     )
-    b.form(v.stuff, mesh, collides="none", volume=0.004)
+    b.form(v.material, mesh, collides="none", volume=0.004)
     b.collide((d * 0.95, w * 0.92, 0.02), (0, 0, h - 0.02))
     b.collide((0.02, w * 0.85, v.back - 0.05), (-d * 0.56, 0, h + v.back / 2 + 0.02), (0, -10, 0))
     for sx in (-1.0, 1.0):
@@ -175,7 +183,7 @@ def _shell(b: Workbench, v: Values) -> None:
         b.box(v.frame, (d * 0.5, 0.03, 0.02), (0, -w * 0.27, h - 0.068))
 
 
-def _upholstered(b: Workbench, v: Values) -> None:
+def _upholstered(b: PieceBuilder, v: Values) -> None:
     """Make seat and back of foam, on wooden or metal legs."""
     d, w, h = v.depth, v.width, v.height
     b.form(
@@ -206,7 +214,7 @@ def _upholstered(b: Workbench, v: Values) -> None:
             )
 
 
-def _cantilever(b: Workbench, v: Values) -> None:
+def _cantilever(b: PieceBuilder, v: Values) -> None:
     """Bend a steel tube from the floor to the back, seat and back hung into it."""
     d, w, h, r = v.depth, v.width, v.height, 0.0125
     for sy in (-1.0, 1.0):
@@ -270,7 +278,7 @@ FAMILY = Family(
                 "count": Whole(3, 7),
                 "leg": Choice("square", "tapered"),
                 "rungs": Choice(True, False),
-                "stuff": Choice(*WOODS, paint("#e8e4da"), paint("#33373b")),
+                "material": Choice(*WOODS, paint("#e8e4da"), paint("#33373b")),
                 "pad": _PAD,
             },
         ),
@@ -282,7 +290,7 @@ FAMILY = Family(
                 "kind": Choice("bow", "comb"),
                 "count": Whole(5, 8),
                 "leg": Choice("turned", "splayed"),
-                "stuff": Choice(*WOODS, paint("#2d3134"), paint("#8c9a86")),
+                "material": Choice(*WOODS, paint("#2d3134"), paint("#8c9a86")),
             },
         ),
         "shell": Style(
@@ -295,7 +303,7 @@ FAMILY = Family(
                 "round": Span(0.03, 0.1),
                 "leg": Choice("splayed", "metal"),
                 "thick": Span(0.024, 0.034),
-                "stuff": Choice(
+                "material": Choice(
                     *(
                         paint(c, 0.35)
                         for c in ("#e9e6df", "#2a2c2f", "#c9a227", "#5d7b78", "#b5523b", "#8a939a")

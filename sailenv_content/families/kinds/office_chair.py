@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.materials import FABRICS, LEATHERS, PieceMaterial, metal, paint, wood
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import ribbon, swept, turned
-from sailenv_content.families.stuff import FABRICS, LEATHERS, Stuff, metal, paint, wood
 from sailenv_content.families.upholstery import pad
-from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import curve
 
 __all__ = ["FAMILY"]
 
 
-def _base(b: Workbench, v: Values, height: float) -> None:
+def _base(b: PieceBuilder, v: Values, height: float) -> None:
     """Add a star of five arms on castors, and a column."""
     steel = v.base
     black = paint("#1b1c1e", 0.5, 1100.0)
@@ -58,13 +58,13 @@ def _base(b: Workbench, v: Values, height: float) -> None:
     )
 
 
-def _arms(b: Workbench, v: Values, stuff: Stuff, z: float) -> None:
+def _arms(b: PieceBuilder, v: Values, material: PieceMaterial, z: float) -> None:
     if not v.arms:
         return
     for sy in (-1.0, 1.0):
         y = sy * (v.width / 2 + 0.035)
         line = [(0.0, sy * v.width * 0.3, z - 0.05), (0.0, y, z - 0.045), (0.0, y, z + 0.19)]
-        b.form(stuff, swept(curve(line, 10), 0.016, sides=10), collides="none")
+        b.form(material, swept(curve(line, 10), 0.016, sides=10), collides="none")
         pad(
             b,
             paint("#202124", 0.7, 400.0),
@@ -75,7 +75,7 @@ def _arms(b: Workbench, v: Values, stuff: Stuff, z: float) -> None:
         )
 
 
-def _task(b: Workbench, v: Values) -> None:
+def _task(b: PieceBuilder, v: Values) -> None:
     """Make a padded seat and a narrow back on a curved bar."""
     z = v.height
     _base(b, v, z)
@@ -103,7 +103,7 @@ def _task(b: Workbench, v: Values) -> None:
     _arms(b, v, black, z)
 
 
-def _mesh(b: Workbench, v: Values) -> None:
+def _mesh(b: PieceBuilder, v: Values) -> None:
     """Make a frame with a net between, a head rest for some."""
     z = v.height
     _base(b, v, z)
@@ -156,7 +156,7 @@ def _mesh(b: Workbench, v: Values) -> None:
     _arms(b, v, black, z)
 
 
-def _executive(b: Workbench, v: Values) -> None:
+def _executive(b: PieceBuilder, v: Values) -> None:
     """Make a tall padded back in sections."""
     z = v.height
     _base(b, v, z)
@@ -197,7 +197,7 @@ def _executive(b: Workbench, v: Values) -> None:
         pad(b, v.cover, (0.22, 0.05, 0.03), (0.03, y, z + 0.245), puff=0.006, radius=0.014)
 
 
-def _shell(b: Workbench, v: Values) -> None:
+def _shell(b: PieceBuilder, v: Values) -> None:
     """Make a bent shell of wood or plastic on castors."""
     z = v.height
     _base(b, v, z)

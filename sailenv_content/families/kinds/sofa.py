@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import four_legs, leg
+from sailenv_content.families.materials import FABRICS, LEATHERS, WOODS, metal
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
 from sailenv_content.families.shaping import placed, turned
-from sailenv_content.families.stuff import FABRICS, LEATHERS, WOODS, metal
 from sailenv_content.families.upholstery import loose_cushions, pad, seat, width_of
-from sailenv_content.families.workbench import Workbench
 
 __all__ = ["FAMILY", "boxy", "rolled"]
 
 
-def boxy(b: Workbench, v: Values) -> None:
+def boxy(b: PieceBuilder, v: Values) -> None:
     """Make arms that are blocks."""
     width, d = width_of(v), v.depth
     base = v.legs
@@ -34,7 +34,7 @@ def boxy(b: Workbench, v: Values) -> None:
     loose_cushions(b, v, width, d)
 
 
-def rolled(b: Workbench, v: Values) -> None:
+def rolled(b: PieceBuilder, v: Values) -> None:
     """Make arms that end in a roll; a skirt or turned feet below."""
     width, d = width_of(v), v.depth
     base = v.legs
@@ -90,7 +90,7 @@ def rolled(b: Workbench, v: Values) -> None:
     loose_cushions(b, v, width, d)
 
 
-def _on_legs(b: Workbench, v: Values) -> None:
+def _on_legs(b: PieceBuilder, v: Values) -> None:
     """Make a frame of wood or metal that one sees, thin cushions on it."""
     width, d, t = width_of(v), v.depth, 0.04
     h = v.height - 0.13
@@ -150,7 +150,7 @@ def _on_legs(b: Workbench, v: Values) -> None:
     loose_cushions(b, v, width, d)
 
 
-def _tufted(b: Workbench, v: Values) -> None:
+def _tufted(b: PieceBuilder, v: Values) -> None:
     """Back and arms of one height, with buttons in rows."""
     width, d = width_of(v), v.depth
     base, top = v.legs, v.arm_height + 0.1
@@ -204,7 +204,7 @@ def _tufted(b: Workbench, v: Values) -> None:
     loose_cushions(b, v, width, d)
 
 
-def _corner(b: Workbench, v: Values) -> None:
+def _corner(b: PieceBuilder, v: Values) -> None:
     """Make a boxy sofa with a long seat at one end."""
     width, d = width_of(v), v.depth
     base, long = v.legs, v.chaise
@@ -230,7 +230,7 @@ def _corner(b: Workbench, v: Values) -> None:
     loose_cushions(b, v, width, d)
 
 
-def _boxy_without_arm(b: Workbench, v: Values, width: float, d: float, side: float) -> None:
+def _boxy_without_arm(b: PieceBuilder, v: Values, width: float, d: float, side: float) -> None:
     base = v.legs
     seat(b, v, width, d, base)
     y = -side * (width - v.arm) / 2

@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import leg
+from sailenv_content.families.materials import FABRICS, LEATHERS, WOODS, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import cushion, extruded, swept, turned
-from sailenv_content.families.stuff import FABRICS, LEATHERS, WOODS, metal, paint
 from sailenv_content.families.upholstery import pad
-from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import circle, rectangle
 
 __all__ = ["FAMILY"]
 
 
-def _bar(b: Workbench, v: Values) -> None:
+def _bar(b: PieceBuilder, v: Values) -> None:
     """Make a tall stool with a ring for the feet, a low back for some."""
     r, h = v.seat / 2, v.height
     seat = rectangle(v.seat, v.seat, 0.06) if v.square else circle(32) * r
-    b.form(v.stuff, extruded(seat, 0.032, bevel=0.01, tile_m=v.stuff.tile_m), (0, 0, h - 0.032))
+    b.form(
+        v.material, extruded(seat, 0.032, bevel=0.01, tile_m=v.material.tile_m), (0, 0, h - 0.032)
+    )
     for sx in (-1.0, 1.0):
         for sy in (-1.0, 1.0):
             leg(b, v.frame, v.leg, sx * r * 0.62, sy * r * 0.62, h - 0.03, 0.032, splay=0.07)
@@ -53,7 +55,7 @@ def _bar(b: Workbench, v: Values) -> None:
                 ),
             )
         b.box(
-            v.stuff,
+            v.material,
             (0.018, v.seat * 0.86, 0.09),
             (-r * 1.02, 0.0, h + v.back - 0.04),
             turn=(0, -12, 0),
@@ -61,7 +63,7 @@ def _bar(b: Workbench, v: Values) -> None:
         )
 
 
-def _milking(b: Workbench, v: Values) -> None:
+def _milking(b: PieceBuilder, v: Values) -> None:
     """Make a low round stool with three splayed legs."""
     r, h = v.seat / 2, v.low
     profile = [
@@ -73,7 +75,7 @@ def _milking(b: Workbench, v: Values) -> None:
         (r * 0.5, 0.029),
         (0, 0.027),
     ]
-    b.form(v.stuff, turned(profile, segments=28, tile_m=v.stuff.tile_m), (0, 0, h - 0.034))
+    b.form(v.material, turned(profile, segments=28, tile_m=v.material.tile_m), (0, 0, h - 0.034))
     for angle in np.arange(v.count) * 2 * np.pi / v.count + 0.4:
         leg(
             b,
@@ -87,7 +89,7 @@ def _milking(b: Workbench, v: Values) -> None:
         )
 
 
-def _column(b: Workbench, v: Values) -> None:
+def _column(b: PieceBuilder, v: Values) -> None:
     """Make a round seat on a column and a plate, as at a counter."""
     r, h = v.seat / 2, v.height
     steel = v.metal
@@ -129,7 +131,7 @@ def _column(b: Workbench, v: Values) -> None:
     b.form(v.cover, turned(profile, segments=30, tile_m=v.cover.tile_m), (0, 0, h - 0.05))
 
 
-def _pouf(b: Workbench, v: Values) -> None:
+def _pouf(b: PieceBuilder, v: Values) -> None:
     """Make a soft drum or cube without legs."""
     r, h = v.seat * 0.62, v.low
     if v.square:
@@ -151,7 +153,7 @@ def _pouf(b: Workbench, v: Values) -> None:
         b.form(v.cover, swept(line, 0.004, sides=6, tile_m=0.06), collides="none")
 
 
-def _bench_stool(b: Workbench, v: Values) -> None:
+def _bench_stool(b: PieceBuilder, v: Values) -> None:
     """Make a rectangular footstool with a cushion on four legs."""
     w, d, h = v.seat * 1.5, v.seat * 1.1, v.low
     for sx in (-1.0, 1.0):
@@ -169,7 +171,7 @@ _SHARED = {
     "seat": Span(0.32, 0.38),
     "height": Span(0.63, 0.78),
     "low": Span(0.4, 0.47),
-    "stuff": Choice(*WOODS, paint("#2d3033")),
+    "material": Choice(*WOODS, paint("#2d3033")),
     "frame": Choice(*WOODS[:4], metal("#232326"), metal("brass"), metal("chrome")),
     "leg": Choice("round", "metal"),
     "square": Choice(True, False),

@@ -4,30 +4,32 @@ from __future__ import annotations
 
 import numpy as np
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import four_legs, leg
+from sailenv_content.families.materials import WOODS, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.shaping import extruded, swept, turned
-from sailenv_content.families.stuff import WOODS, metal, paint
-from sailenv_content.families.workbench import Workbench
 from sailenv_content.procedural.forms import circle, rectangle
 
 __all__ = ["FAMILY"]
 
 
-def _four(b: Workbench, v: Values) -> None:
+def _four(b: PieceBuilder, v: Values) -> None:
     """Make a rectangular top on four legs, with an apron below it."""
     d, w, h, t = v.depth, v.width, v.height, v.top
     if v.round:
         outline = rectangle(w, d, v.round)
-        top = extruded(outline, t, bevel=0.006, tile_m=v.stuff.tile_m)
-        b.form(v.stuff, top, (0.0, 0.0, h - t))
+        top = extruded(outline, t, bevel=0.006, tile_m=v.material.tile_m)
+        b.form(v.material, top, (0.0, 0.0, h - t))
     else:
         boards = max(3, round(d / 0.16))
         each = d / boards
         for number in range(boards):
             x = -d / 2 + (number + 0.5) * each
-            b.box(v.stuff, (each - 0.0006, w, t), (x, 0.0, h - t / 2), bevel=0.0015, collides=False)
+            b.box(
+                v.material, (each - 0.0006, w, t), (x, 0.0, h - t / 2), bevel=0.0015, collides=False
+            )
         b.collide((d, w, t), (0.0, 0.0, h - t / 2))
     inset = 0.05
     four_legs(b, v.frame, v.leg, d - 2 * inset, w - 2 * inset, h - t, v.thick)
@@ -41,11 +43,13 @@ def _four(b: Workbench, v: Values) -> None:
             b.box(v.frame, (d - 2 * inset - 2 * v.thick, 0.02, apron), at)
 
 
-def _pedestal(b: Workbench, v: Values) -> None:
+def _pedestal(b: PieceBuilder, v: Values) -> None:
     """Make a round or oval top on one foot."""
     h, t = v.height, v.top
     outline = circle(48) * (v.across / 2, v.across / 2 * v.oval)
-    b.form(v.stuff, extruded(outline, t, bevel=0.008, tile_m=v.stuff.tile_m), (0.0, 0.0, h - t))
+    b.form(
+        v.material, extruded(outline, t, bevel=0.008, tile_m=v.material.tile_m), (0.0, 0.0, h - t)
+    )
     r = v.across * 0.26
     if v.trumpet:
         rows = [(0.0, 0.0), (r, 0.0), (r, 0.006)]
@@ -75,10 +79,10 @@ def _pedestal(b: Workbench, v: Values) -> None:
             b.form(v.foot, swept([(0.0, 0.0, 0.1), tip], (0.034, 0.02), sides=12))
 
 
-def _trestle(b: Workbench, v: Values) -> None:
+def _trestle(b: PieceBuilder, v: Values) -> None:
     """Make a thick top on two crossed or closed frames."""
     d, w, h, t = v.depth, v.width, v.height, v.top * 1.4
-    b.box(v.stuff, (d, w, t), (0.0, 0.0, h - t / 2), bevel=0.005)
+    b.box(v.material, (d, w, t), (0.0, 0.0, h - t / 2), bevel=0.005)
     for sy in (-1.0, 1.0):
         y = sy * (w / 2 - 0.22)
         rise, run = h - t, d - 0.16
@@ -100,25 +104,27 @@ def _trestle(b: Workbench, v: Values) -> None:
     b.box(v.frame, (0.05, w - 0.5, 0.07), (0.0, 0.0, (h - t) / 2))
 
 
-def _nested(b: Workbench, v: Values) -> None:
+def _nested(b: PieceBuilder, v: Values) -> None:
     """Make a low table with a second one below it, or a shelf."""
     d, w, h = v.depth, v.width, v.height
-    b.box(v.stuff, (d, w, v.top), (0.0, 0.0, h - v.top / 2), bevel=0.004)
+    b.box(v.material, (d, w, v.top), (0.0, 0.0, h - v.top / 2), bevel=0.004)
     four_legs(b, v.frame, "square", d - 0.01, w - 0.01, h - v.top, 0.035)
     z = h * 0.3
     for number in range(7):
         x = (d - 0.1) * ((number + 0.5) / 7 - 0.5)
-        b.box(v.stuff, ((d - 0.1) / 7 - 0.012, w - 0.03, 0.014), (x, 0.0, z))
+        b.box(v.material, ((d - 0.1) / 7 - 0.012, w - 0.03, 0.014), (x, 0.0, z))
     for sy in (-1.0, 1.0):
         b.box(v.frame, (d - 0.07, 0.02, 0.03), (0.0, sy * (w / 2 - 0.022), z - 0.022))
 
 
-def _side(b: Workbench, v: Values) -> None:
+def _side(b: PieceBuilder, v: Values) -> None:
     """Make a small round table on three legs."""
     h, r = v.height, v.across / 2
     outline = circle(36) * r
     b.form(
-        v.stuff, extruded(outline, v.top, bevel=0.005, tile_m=v.stuff.tile_m), (0.0, 0.0, h - v.top)
+        v.material,
+        extruded(outline, v.top, bevel=0.005, tile_m=v.material.tile_m),
+        (0.0, 0.0, h - v.top),
     )
     for angle in np.arange(3) * 2 * np.pi / 3 + 0.5:
         leg(
@@ -155,7 +161,7 @@ FAMILY = Family(
                 "round": Choice(0.0, 0.0, 0.05, 0.3),
                 "leg": Choice("square", "tapered", "turned", "hairpin"),
                 "thick": Span(0.055, 0.075),
-                "stuff": _TOPS,
+                "material": _TOPS,
                 "frame": _FRAMES,
             },
         ),
@@ -166,13 +172,18 @@ FAMILY = Family(
                 "across": Span(0.95, 1.35),
                 "oval": Choice(1.0, 1.0, 1.4),
                 "trumpet": Choice(True, False),
-                "stuff": _TOPS,
+                "material": _TOPS,
                 "foot": Choice(*WOODS, metal("#232326"), paint("#ece9e2")),
             },
         ),
         "trestle": Style(
             _trestle,
-            {**_DINING, "crossed": Choice(True, False), "stuff": Choice(*WOODS), "frame": _FRAMES},
+            {
+                **_DINING,
+                "crossed": Choice(True, False),
+                "material": Choice(*WOODS),
+                "frame": _FRAMES,
+            },
         ),
         "coffee": Style(
             _four,
@@ -184,7 +195,7 @@ FAMILY = Family(
                 "round": Choice(0.0, 0.04, 0.22),
                 "leg": Choice("square", "tapered", "hairpin"),
                 "thick": Span(0.035, 0.05),
-                "stuff": _TOPS,
+                "material": _TOPS,
                 "frame": _FRAMES,
             },
             "coffee table",
@@ -196,7 +207,7 @@ FAMILY = Family(
                 "width": Span(0.9, 1.2),
                 "height": Span(0.38, 0.46),
                 "top": Span(0.02, 0.03),
-                "stuff": Choice(*WOODS),
+                "material": Choice(*WOODS),
                 "frame": _FRAMES,
             },
             "coffee table",
@@ -208,7 +219,7 @@ FAMILY = Family(
                 "height": Span(0.45, 0.58),
                 "top": Span(0.018, 0.028),
                 "leg": Choice("splayed", "metal"),
-                "stuff": _TOPS,
+                "material": _TOPS,
                 "frame": _FRAMES,
             },
             "coffee table",

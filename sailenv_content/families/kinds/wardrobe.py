@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.contents import folded, hung_clothes
 from sailenv_content.families.family import Family, Style
-from sailenv_content.families.fronts import CLEARANCE_M, door, drawer, front_panel
+from sailenv_content.families.fronts import CLEARANCE_M, door, drawer, sliding_doors
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import carcass, four_legs, shelf
+from sailenv_content.families.materials import PieceMaterial, metal, paint, wood
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
-from sailenv_content.families.stuff import Stuff, metal, paint, wood
-from sailenv_content.families.workbench import Workbench
 
 __all__ = ["FAMILY"]
 
@@ -26,7 +26,7 @@ def _inside(v: Values, base: float, board: float = 0.018) -> Box:
     return Box(low, (front, v.width / 2.0 - board, v.height - board))
 
 
-def _furnished(b: Workbench, inner: Stuff, inside: Box, columns: int) -> None:
+def _furnished(b: PieceBuilder, inner: PieceMaterial, inside: Box, columns: int) -> None:
     """Divide the inside; one column has shelves, the others a rail."""
     rooms = inside.columns([1.0] * columns, 0.018)
     for before, after in pairwise(rooms):
@@ -48,7 +48,14 @@ def _furnished(b: Workbench, inner: Stuff, inside: Box, columns: int) -> None:
             hung_clothes(b, room.within((0.0, 0.01, 0.02), (0.03, 0.01, 0.30)))
 
 
-def _doors(b: Workbench, stuff: Stuff, front: Box, v: Values, metal_: Stuff, count: int) -> None:
+def _doors(
+    b: PieceBuilder,
+    material: PieceMaterial,
+    front: Box,
+    v: Values,
+    metal_: PieceMaterial,
+    count: int,
+) -> None:
     leaves = front.inset(CLEARANCE_M).columns([1.0] * count, CLEARANCE_M)
     for number, panel in enumerate(leaves):
         hinge = "right" if (number % 2 == 0 and number < count - 1) or count == 1 else "left"
@@ -57,7 +64,7 @@ def _doors(b: Workbench, stuff: Stuff, front: Box, v: Values, metal_: Stuff, cou
         door(
             b,
             name,
-            stuff,
+            material,
             v.front,
             panel,
             hinge=hinge,
@@ -73,32 +80,26 @@ def _front(inside: Box, v: Values, low: float, high: float) -> Box:
     return Box((x, -v.width / 2.0, low), (x + 0.019, v.width / 2.0, high))
 
 
-def _hinged(b: Workbench, v: Values) -> None:
-    stuff, metal_ = v.stuff, v.metal
+def _hinged(b: PieceBuilder, v: Values) -> None:
+    material, metal_ = v.material, v.metal
     inside = _inside(v, v.base)
-    carcass(b, stuff, inside)
-    b.box(stuff, (v.depth - 0.06, v.width - 0.03, v.base), (-0.02, 0.0, v.base / 2.0))
+    carcass(b, material, inside)
+    b.box(material, (v.depth - 0.06, v.width - 0.03, v.base), (-0.02, 0.0, v.base / 2.0))
     count = max(2, round(v.width / 0.5))
     _furnished(b, v.inner, inside, max(1, count // 2))
-    _doors(b, stuff, _front(inside, v, v.base, v.height), v, metal_, count)
+    _doors(b, material, _front(inside, v, v.base, v.height), v, metal_, count)
 
 
-def _sliding(b: Workbench, v: Values) -> None:
+def _sliding(b: PieceBuilder, v: Values) -> None:
     inside = _inside(v, 0.05)
     inside = inside.within(high=(0.04, 0.0, 0.0))
-    carcass(b, v.stuff, inside)
-    b.box(v.stuff, (v.depth - 0.06, v.width - 0.03, 0.05), (-0.02, 0.0, 0.025))
+    carcass(b, v.material, inside)
+    b.box(v.material, (v.depth - 0.06, v.width - 0.03, 0.05), (-0.02, 0.0, 0.025))
     rooms = 2 if v.width < 2.0 else 3
     _furnished(b, v.inner, inside, rooms)
-    half = v.width / 2.0
-    for sign, name, x in ((1.0, "left door", 0.0), (-1.0, "right door", 0.026)):
-        low = (inside.high[0] + 0.003 + x, 0.0 if sign > 0 else -half, 0.055)
-        panel = Box(low, (low[0] + 0.022, half if sign > 0 else 0.02, v.height - 0.004))
-        by = half - 0.05
-        with b.slide(name, "door", by=by, axis=(0.0, -sign, 0.0), friction=6.0):
-            front_panel(b, v.door, v.front, panel)
-            edge = panel.low[1] + 0.03 if sign < 0 else panel.high[1] - 0.03
-            b.box(v.metal, (0.002, 0.02, 0.22), (panel.high[0], edge, 1.0), collides=False)
+    half, x = v.width / 2.0, inside.high[0] + 0.003
+    opening = Box((x, -half, 0.055), (x + 0.05, half, v.height - 0.004))
+    sliding_doors(b, opening, v.door, v.front, v.metal, grip_z=1.0)
     for z in (0.052, v.height - 0.002):
         b.box(
             v.metal,
@@ -109,21 +110,21 @@ def _sliding(b: Workbench, v: Values) -> None:
         )
 
 
-def _with_drawers(b: Workbench, v: Values) -> None:
+def _with_drawers(b: PieceBuilder, v: Values) -> None:
     """Make two doors above one or two drawers, on legs."""
     base = v.legs
     inside = _inside(v, base)
-    carcass(b, v.stuff, inside, overhang=0.012)
-    four_legs(b, v.stuff, "tapered", v.depth - 0.04, v.width - 0.02, base, 0.045)
+    carcass(b, v.material, inside, overhang=0.012)
+    four_legs(b, v.material, "tapered", v.depth - 0.04, v.width - 0.02, base, 0.045)
     split = base + 0.018 + 0.24 * v.rows
-    b.box(v.stuff, (inside.size[0], inside.size[1], 0.018), (inside.middle[0], 0.0, split))
+    b.box(v.material, (inside.size[0], inside.size[1], 0.018), (inside.middle[0], 0.0, split))
     _furnished(b, v.inner, Box((*inside.low[:2], split + 0.009), inside.high), 1)
     lower = _front(inside, v, base, split).inset(CLEARANCE_M)
     for number, panel in enumerate(lower.rows([1.0] * v.rows, CLEARANCE_M)):
         drawer(
             b,
             f"drawer {number + 1}",
-            v.stuff,
+            v.material,
             "flat",
             panel,
             inside.size[0] - 0.03,
@@ -132,10 +133,10 @@ def _with_drawers(b: Workbench, v: Values) -> None:
             metal_=v.metal,
             side_gap=0.034,
         )
-    _doors(b, v.stuff, _front(inside, v, split, v.height - 0.018), v, v.metal, 2)
+    _doors(b, v.material, _front(inside, v, split, v.height - 0.018), v, v.metal, 2)
 
 
-def _open(b: Workbench, v: Values) -> None:
+def _open(b: PieceBuilder, v: Values) -> None:
     """Make an open frame of metal and wood, with a rail, a shelf and a box of drawers."""
     w, d, h = v.width, v.depth, v.height
     for sx in (-1.0, 1.0):
@@ -146,13 +147,13 @@ def _open(b: Workbench, v: Values) -> None:
             b.box(v.metal, (0.025, w - 0.05, 0.025), (sx * (d / 2 - 0.013), 0.0, z))
         for sy in (-1.0, 1.0):
             b.box(v.metal, (d - 0.05, 0.025, 0.025), (0.0, sy * (w / 2 - 0.013), z))
-    b.box(v.stuff, (d - 0.004, w - 0.054, 0.022), (0.0, 0.0, 0.164))
-    b.box(v.stuff, (d - 0.06, w - 0.054, 0.022), (0.0, 0.0, h - 0.3))
+    b.box(v.material, (d - 0.004, w - 0.054, 0.022), (0.0, 0.0, 0.164))
+    b.box(v.material, (d - 0.06, w - 0.054, 0.022), (0.0, 0.0, h - 0.3))
     hung_clothes(
         b, Box((-d / 2 + 0.05, -w / 2 + 0.03, 0.5), (d / 2 - 0.05, w / 2 - 0.03, h - 0.32))
     )
     chest = Box((-d / 2 + 0.03, -w / 2 + 0.07, 0.193), (d / 2 - 0.045, w / 2 - 0.07, 0.46))
-    carcass(b, v.stuff, chest)
+    carcass(b, v.material, chest)
     front = Box(
         (chest.high[0] + 0.001, chest.low[1] - 0.018, chest.low[2] - 0.018),
         (chest.high[0] + 0.02, chest.high[1] + 0.018, chest.high[2] + 0.018),
@@ -161,7 +162,7 @@ def _open(b: Workbench, v: Values) -> None:
         drawer(
             b,
             ("right drawer", "left drawer")[number],
-            v.stuff,
+            v.material,
             "flat",
             panel,
             chest.size[0] - 0.03,
@@ -190,7 +191,7 @@ FAMILY = Family(
                 "base": Span(0.06, 0.1),
                 "front": Choice("flat", "shaker", "grooved"),
                 "handle": Choice("bar", "knob", "cup"),
-                "stuff": Choice(*(paint(c) for c in PAINTS), wood("oak"), wood("ash")),
+                "material": Choice(*(paint(c) for c in PAINTS), wood("oak"), wood("ash")),
                 "inner": _INNER,
                 "metal": _METALS,
             },
@@ -202,7 +203,7 @@ FAMILY = Family(
                 "height": Span(2.0, 2.3),
                 "width": Span(1.5, 2.4),
                 "front": Choice("flat", "shaker"),
-                "stuff": Choice(paint("#e4e2dc"), wood("light oak"), wood("walnut")),
+                "material": Choice(paint("#e4e2dc"), wood("light oak"), wood("walnut")),
                 "door": Choice(paint("#ece8e0"), paint("#6b7178"), wood("oak"), wood("walnut")),
                 "inner": _INNER,
                 "metal": Choice(metal("alu"), metal("#26272a")),
@@ -218,7 +219,7 @@ FAMILY = Family(
                 "rows": Whole(1, 2),
                 "front": Choice("shaker", "louvre"),
                 "handle": Choice("knob", "cup", "bar"),
-                "stuff": Choice(
+                "material": Choice(
                     wood("cherry"),
                     wood("pine"),
                     wood("walnut"),
@@ -236,7 +237,7 @@ FAMILY = Family(
                 "depth": Span(0.45, 0.52),
                 "height": Span(1.7, 1.95),
                 "width": Span(0.9, 1.3),
-                "stuff": Choice(wood("oak"), wood("pine"), wood("walnut")),
+                "material": Choice(wood("oak"), wood("pine"), wood("walnut")),
                 "inner": _INNER,
                 "metal": Choice(metal("#26272a"), metal("#e8e6e0"), metal("steel")),
             },

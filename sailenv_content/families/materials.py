@@ -1,24 +1,25 @@
 """Materials of pieces: woods, metals, fabrics, glass, with density and finish.
 
-A name and a colour in, a `Stuff` out. Fine structures are the catalogue's own patterns.
+A name and a colour in, a `PieceMaterial` out, the same object each time: the families name a
+limited number of them. Fine structures are the catalogue's own patterns.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 
 from sailenv_content.standard.patterns import PATTERNS, pattern_maps
 from sailenv_ros.types.colour import linear_from_srgb
-from sailenv_ros.types.model import Material
+from sailenv_ros.types.model import Material, Texture
 
 __all__ = [
     "FABRICS",
     "LEATHERS",
     "WOODS",
-    "Stuff",
+    "PieceMaterial",
     "colour_of",
     "fabric",
     "glass",
@@ -26,6 +27,7 @@ __all__ = [
     "leather",
     "metal",
     "paint",
+    "printed",
     "wood",
 ]
 
@@ -33,19 +35,19 @@ Vector3 = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Stuff:
+class PieceMaterial:
     """A material, the size of what its textures show, and its density.
 
     Attributes
     ----------
-    material : Material
+    surface : Material
     tile_m : float
         Edge of what the texture shows [m].
     density : float
         Mean, hollows of a real piece counted in [kg/m³].
     """
 
-    material: Material
+    surface: Material
     tile_m: float
     density: float
 
@@ -82,7 +84,9 @@ def colour_of(text: str) -> Vector3:
     return red, green, blue
 
 
-def _patterned(name: str, pattern: str, colour: str, roughness: float, density: float) -> Stuff:
+def _patterned(
+    name: str, pattern: str, colour: str, roughness: float, density: float
+) -> PieceMaterial:
     maps = pattern_maps(PATTERNS[pattern])
     made = Material(
         name=name,
@@ -91,51 +95,54 @@ def _patterned(name: str, pattern: str, colour: str, roughness: float, density: 
         base_colour_texture=maps["base_colour_texture"],
         normal_texture=maps.get("normal_texture"),
     )
-    return Stuff(made, PATTERNS[pattern].tile_m, density)
+    return PieceMaterial(made, PATTERNS[pattern].tile_m, density)
 
 
-@lru_cache(maxsize=256)
-def wood(species: str) -> Stuff:
+@cache
+def wood(species: str) -> PieceMaterial:
     """Return a wood with its grain along u."""
     return _patterned(species, "grain", _WOODS[species], 0.48, 600.0)
 
 
-@lru_cache(maxsize=256)
-def paint(colour: str, roughness: float = 0.42, density: float = 600.0) -> Stuff:
+@cache
+def paint(colour: str, roughness: float = 0.42, density: float = 600.0) -> PieceMaterial:
     """Return a lacquer on board, or plastic."""
     made = Material(
         name=f"paint {colour}", base_colour=(*colour_of(colour), 1.0), roughness=roughness
     )
-    return Stuff(made, 1.0, density)
+    return PieceMaterial(made, 1.0, density)
 
 
-@lru_cache(maxsize=256)
-def metal(kind: str) -> Stuff:
-    """Return a metal by name, or one that is powder-coated in ``#rrggbb``."""
+@cache
+def metal(kind: str, density: float = 2500.0) -> PieceMaterial:
+    """Return a metal by name, or one that is powder-coated in ``#rrggbb``.
+
+    Tubes are drawn as rods and cases of sheet as boards, hence the densities.
+    """
     if kind.startswith("#"):
         made = Material(name=f"coated {kind}", base_colour=(*colour_of(kind), 1.0), roughness=0.5)
-        return Stuff(made, 1.0, 2500.0)
+        return PieceMaterial(made, 1.0, density)
     colour, roughness = _METALS[kind]
     made = Material(
         name=kind, base_colour=(*colour_of(colour), 1.0), metallic=1.0, roughness=roughness
     )
-    return Stuff(made, 1.0, 2500.0)
+    return PieceMaterial(made, 1.0, density)
 
 
-@lru_cache(maxsize=256)
-def fabric(colour: str) -> Stuff:
+@cache
+def fabric(colour: str) -> PieceMaterial:
     """Return upholstery."""
     return _patterned(f"fabric {colour}", "weave", colour, 0.95, 70.0)
 
 
-@lru_cache(maxsize=256)
-def leather(colour: str) -> Stuff:
+@cache
+def leather(colour: str) -> PieceMaterial:
     """Return leather over foam."""
     return _patterned(f"leather {colour}", "leather", colour, 0.5, 80.0)
 
 
-@lru_cache(maxsize=256)
-def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> Stuff:
+@cache
+def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> PieceMaterial:
     """Return clear or tinted glass."""
     made = Material(
         name=f"glass {colour}",
@@ -143,11 +150,17 @@ def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> Stuff:
         roughness=0.06,
         alpha="blend",
     )
-    return Stuff(made, 1.0, 2500.0)
+    return PieceMaterial(made, 1.0, 2500.0)
 
 
-@lru_cache(maxsize=256)
-def glow(colour: str, strength: float) -> Stuff:
+def printed(name: str, picture: Texture) -> PieceMaterial:
+    """Return paper or canvas with a picture, whose u and v go from 0 to 1."""
+    made = Material(name=name, base_colour_texture=picture, base_colour=(1.0,) * 4, roughness=0.8)
+    return PieceMaterial(made, 1.0, 700.0)
+
+
+@cache
+def glow(colour: str, strength: float) -> PieceMaterial:
     """Return a shade or a bulb that glows by the light of its lamp."""
     red, green, blue = colour_of(colour)
     made = Material(
@@ -157,7 +170,7 @@ def glow(colour: str, strength: float) -> Stuff:
         glow=(strength * red, strength * green, strength * blue),
         double_sided=True,
     )
-    return Stuff(made, 1.0, 300.0)
+    return PieceMaterial(made, 1.0, 300.0)
 
 
 WOODS = tuple(wood(n) for n in ("oak", "walnut", "beech", "teak", "ash", "black oak", "cherry"))

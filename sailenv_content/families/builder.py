@@ -1,4 +1,4 @@
-"""Where a piece is put together: forms with their stuff, labelled parts, and what opens.
+"""Where a piece is put together: forms with their material, labelled parts, and what opens.
 
 A form collides as itself: a board as its box, others as their hulls. Mass and centre follow from
 the volumes and densities.
@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from sailenv_content.families.materials import PieceMaterial
 from sailenv_content.families.shaping import Floats, board, placed
-from sailenv_content.families.stuff import Stuff
 from sailenv_ros.assets.hulls import convex_hull
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import BoxShape, CollisionShape, Mesh
 
-__all__ = ["Joint", "Unfit", "Work", "Workbench"]
+__all__ = ["Joint", "Unfit", "Component", "PieceBuilder"]
 
 Vector3 = tuple[float, float, float]
 Collides = Literal["hull", "box", "none"]
@@ -46,7 +46,7 @@ class Joint:
 
 
 @dataclass(slots=True, kw_only=True)
-class Work:
+class Component:
     """All that belongs to one part of a piece, or to its body.
 
     Attributes
@@ -56,7 +56,7 @@ class Work:
     category : str
     joint : Joint or None
         Of what opens.
-    meshes : list of (Stuff, Mesh)
+    meshes : list of (PieceMaterial, Mesh)
     shapes : list of CollisionShape
     mass_kg : float
     moment : (3,) float64
@@ -66,35 +66,36 @@ class Work:
     name: str
     category: str
     joint: Joint | None = None
-    meshes: list[tuple[Stuff, Mesh]] = field(default_factory=list)
+    meshes: list[tuple[PieceMaterial, Mesh]] = field(default_factory=list)
     shapes: list[CollisionShape] = field(default_factory=list)
     mass_kg: float = 0.0
     moment: Floats = field(default_factory=lambda: np.zeros(3))
 
 
-class Workbench:
+class PieceBuilder:
     """Puts one piece together.
 
     Attributes
     ----------
     rng : numpy.random.Generator
         For all that is random beside the parameters.
-    works : list of Work
+    components : list of Component
         The body first.
     keypoints : dict of str to (3,) tuple of float
     """
 
     def __init__(self, rng: np.random.Generator) -> None:
         self.rng = rng
-        self.works = [Work(name="", category="")]
+        self.components = [Component(name="", category="")]
         self.keypoints: dict[str, Vector3] = {}
-        self._at = self.works[0]
+        self._at = self.components[0]
+        self._frame = _Frame()
 
     # -- forms -----------------------------------------------------------------------------
 
     def box(
         self,
-        stuff: Stuff,
+        material: PieceMaterial,
         size: ArrayLike,
         at: ArrayLike,
         *,
@@ -110,18 +111,20 @@ class Workbench:
             raise Unfit(f"a board of {sides.tolist()} m")
         u, v = self.rng.uniform(0.0, 1.0, 2).tolist()
         x, y, z = sides.tolist()
-        mesh = board((x, y, z), bevel=bevel, tile_m=stuff.tile_m, shift=(u, v), top=top, lean=lean)
-        mesh = placed(mesh, at, turn)
+        mesh = board(
+            (x, y, z), bevel=bevel, tile_m=material.tile_m, shift=(u, v), top=top, lean=lean
+        )
+        mesh = self._frame.mesh(placed(mesh, at, turn))
         plain = top == (1.0, 1.0) and lean == (0.0, 0.0)
-        self._add(stuff, mesh, float(sides.prod()))
+        self._add(material, mesh, float(sides.prod()))
         if collides and plain:
-            self._at.shapes.append(_box_shape(sides, at, turn))
+            self.collide(sides, at, turn)
         elif collides:
             self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
 
     def form(
         self,
-        stuff: Stuff,
+        material: PieceMaterial,
         mesh: Mesh,
         at: ArrayLike = (0.0, 0.0, 0.0),
         *,
@@ -130,24 +133,40 @@ class Workbench:
         volume: float | None = None,
     ) -> None:
         """Add any form; `volume` [m³] is that of its triangles unless it is given."""
-        mesh = placed(mesh, at, turn)
-        self._add(stuff, mesh, _volume(mesh) if volume is None else volume)
+        mesh = self._frame.mesh(placed(mesh, at, turn))
+        self._add(material, mesh, _volume(mesh) if volume is None else volume)
         if collides == "hull":
             self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
         elif collides == "box":
             low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
-            self._at.shapes.append(_box_shape(high - low, (low + high) / 2.0, (0.0, 0.0, 0.0)))
+            self._at.shapes.append(_box_shape(high - low, (low + high) / 2.0))
 
     def collide(self, size: ArrayLike, at: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> None:
         """Add a box that collides and is not drawn: for what is drawn without collision."""
-        self._at.shapes.append(_box_shape(np.asarray(size, np.float64), at, turn))
+        sides, place = np.asarray(size, np.float64), np.asarray(at, np.float64)
+        self._at.shapes.append(self._frame.box_shape(sides, place, np.asarray(turn, np.float64)))
+
+    def hull(self, mesh: Mesh, at: ArrayLike, *, turn: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        """Add the hull of a form that is not drawn, for what is drawn without collision."""
+        mesh = self._frame.mesh(placed(mesh, at, turn))
+        self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
+
+    @contextmanager
+    def frame(self, at: ArrayLike = (0.0, 0.0, 0.0), yaw_deg: float = 0.0) -> Iterator[None]:
+        """Place all that is added inside: turned about z [deg], then shifted [m]."""
+        before = self._frame
+        self._frame = _Frame(before.point(at), before.yaw_deg + yaw_deg)
+        try:
+            yield
+        finally:
+            self._frame = before
 
     # -- parts -----------------------------------------------------------------------------
 
     @contextmanager
     def part(self, name: str, category: str) -> Iterator[None]:
         """Label all that is added inside as a part; inside a part, as a part of that."""
-        with self._working(Work(name=self._named(name), category=category)):
+        with self._adding_to(Component(name=self._named(name), category=category)):
             yield
 
     @contextmanager
@@ -163,17 +182,17 @@ class Workbench:
         damping: float = 0.3,
     ) -> Iterator[None]:
         """Add a part that turns by up to an angle about an axis through a point."""
-        x, y, z = np.asarray(at, np.float64).tolist()
+        x, y, z = self._frame.point(at).tolist()
         joint = Joint(
             type="hinge",
-            axis=axis,
+            axis=self._frame.direction(axis),
             origin_m=(x, y, z),
             limits=(0.0, math.radians(opens_deg)),
             friction=friction,
             effort=40.0,
             damping=damping,
         )
-        with self._working(Work(name=self._named(name), category=category, joint=joint)):
+        with self._adding_to(Component(name=self._named(name), category=category, joint=joint)):
             yield
 
     @contextmanager
@@ -190,20 +209,20 @@ class Workbench:
         """Add a part that slides by up to a length [m]."""
         joint = Joint(
             type="slide",
-            axis=axis,
+            axis=self._frame.direction(axis),
             origin_m=(0.0, 0.0, 0.0),
             limits=(0.0, round(by, 4)),
             friction=friction,
             effort=80.0,
             damping=damping,
         )
-        with self._working(Work(name=self._named(name), category=category, joint=joint)):
+        with self._adding_to(Component(name=self._named(name), category=category, joint=joint)):
             yield
 
     @contextmanager
-    def _working(self, work: Work) -> Iterator[None]:
-        before, self._at = self._at, work
-        self.works.append(work)
+    def _adding_to(self, component: Component) -> Iterator[None]:
+        before, self._at = self._at, component
+        self.components.append(component)
         try:
             yield
         finally:
@@ -211,7 +230,7 @@ class Workbench:
 
     def _named(self, name: str) -> str:
         outer = self._at.name
-        taken = {work.name for work in self.works}
+        taken = {component.name for component in self.components}
         whole = f"{outer}{PART_MARK}{name}" if outer else name
         number, free = 1, whole
         while free in taken:
@@ -233,16 +252,57 @@ class Workbench:
         """Return a number between two."""
         return float(self.rng.uniform(least, most))
 
-    def _add(self, stuff: Stuff, mesh: Mesh, volume: float) -> None:
-        work = self._at
-        work.meshes.append((stuff, mesh))
-        mass = max(volume, 1e-7) * stuff.density
+    def _add(self, material: PieceMaterial, mesh: Mesh, volume: float) -> None:
+        component = self._at
+        component.meshes.append((material, mesh))
+        mass = max(volume, 1e-7) * material.density
         middle = (mesh.positions.min(axis=0) + mesh.positions.max(axis=0)).astype(np.float64) / 2.0
-        work.mass_kg += mass
-        work.moment = work.moment + mass * middle
+        component.mass_kg += mass
+        component.moment = component.moment + mass * middle
 
 
-def _box_shape(size: NDArray[Any], at: ArrayLike, turn: ArrayLike) -> BoxShape:
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """Where forms are put: turned about z, then shifted."""
+
+    at: Floats = field(default_factory=lambda: np.zeros(3))
+    yaw_deg: float = 0.0
+
+    def mesh(self, mesh: Mesh) -> Mesh:
+        """Return a mesh in the piece's own frame."""
+        if not self.yaw_deg and not self.at.any():
+            return mesh
+        return placed(mesh, self.at, (0.0, 0.0, self.yaw_deg))
+
+    def point(self, at: ArrayLike) -> Floats:
+        """Return a point in the piece's own frame [m]."""
+        return np.asarray(self._turned(np.asarray(at, np.float64)) + self.at)
+
+    def direction(self, axis: Vector3) -> Vector3:
+        """Return a unit vector in the piece's own frame."""
+        x, y, z = self._turned(np.asarray(axis, np.float64)).tolist()
+        return x, y, z
+
+    def box_shape(self, size: Floats, at: Floats, turn: Floats) -> BoxShape:
+        """Return a box that collides in the piece's own frame."""
+        if not self.yaw_deg:
+            return _box_shape(size, at + self.at, turn)
+        whole = Rotation.from_euler("z", self.yaw_deg, degrees=True) * Rotation.from_euler(
+            "xyz", turn, degrees=True
+        )
+        return _box_shape(size, self.point(at), whole.as_euler("xyz", degrees=True))
+
+    def _turned(self, vector: Floats) -> Floats:
+        quarters = self.yaw_deg / 90.0
+        if quarters == round(quarters):  # exactly along the axes
+            for _ in range(int(quarters) % 4):
+                vector = np.array([-vector[1], vector[0], vector[2]])
+            return vector
+        turn = Rotation.from_euler("z", self.yaw_deg, degrees=True)
+        return np.asarray(turn.apply(vector), np.float64)
+
+
+def _box_shape(size: NDArray[Any], at: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> BoxShape:
     hx, hy, hz = (np.asarray(size, np.float64) / 2.0).tolist()
     x, y, z = np.asarray(at, np.float64).tolist()
     angles = np.asarray(turn, np.float64)
