@@ -21,7 +21,7 @@ from sailenv_ros.dataset.formats.data_files import write_png
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.frame.lens_rays import reach_of
+from sailenv_ros.frame.lens_rays import reach_lines, reach_of, reach_of_points
 from sailenv_ros.types.camera import Camera
 
 __all__ = ["POINTS", "PointTracks", "PosedPicture", "PosedPictures"]
@@ -209,8 +209,8 @@ def _chosen(
     rows, columns = np.divmod(pixels, reach.shape[1])
     at = np.stack([columns, rows], axis=-1).astype(np.float64)
     lens = picture.camera.intrinsics
-    rays = lens.rays_through(at) if lens.is_pinhole else lens.unit_rays_through(at)
-    points = rays * reach[rows, columns, None].astype(np.float64)
+    origins, rays = reach_lines(lens, at)
+    points = origins + rays * reach[rows, columns, None].astype(np.float64)
     pose = picture.camera.world_from_camera
     ids = instance[rows, columns]
     return points @ pose[:3, :3].T + pose[:3, 3], rgb[rows, columns], picture.poses[ids], ids
@@ -235,8 +235,7 @@ def _observed(
     inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
     still, local, pixels = still[inside], local[inside], pixels[inside]
     column, row = column[inside], row[inside]
-    pinhole = camera.intrinsics.is_pinhole
-    distance = local[:, 2] if pinhole else np.linalg.norm(local, axis=1)
+    distance = reach_of_points(local, camera.intrinsics)
     off = np.abs(reach[row, column].astype(np.float64) - distance)
     same = (instance[row, column] == id_[still]) & (off <= SAME_M + SAME_SHARE * distance)
     return still[same], pixels[same]
