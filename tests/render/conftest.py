@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
+from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 
@@ -46,3 +47,20 @@ def render(renderer: RenderBackend) -> Render:
         return dict(renderer.render(snapshot, previous, camera, views).views)
 
     return call
+
+
+@pytest.fixture(scope="module")
+def native() -> Iterator[NativeRenderer]:
+    """A native renderer."""
+    made = NativeRenderer()
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def room_01() -> Iterator[WorldSnapshot]:
+    """A furnished room after a second, when things have moved."""
+    world = SceneLibrary().build("room_01")
+    world.step(240)
+    yield world.snapshot()
+    world.close()

@@ -6,41 +6,35 @@ Rays come from the lens alone; what they meet, and where points go, is told by `
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import cv2
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from sailenv_ros.frame.lens_rays import depth_shares, rays_of_half_pixels, unit_rays
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.scene.opening_window import OpeningWindows
-from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from tests.support.embree_cast import RayCast
+from tests.support.picture_edges import grown, near_edges
 from tests.support.ray_cast import cast, flow_by_arithmetic
+from tests.support.room_of_things import CAMERA_PATHS, room_of_things, room_that_moves, seen
 from tests.support.tiny_scenes import (
     FORWARD,
     FRAME_NS,
     Thing,
-    box_mesh,
-    checker,
-    contents_of,
     model_of,
-    moved,
     snapshot_of,
     wall_mesh,
 )
 
 WIDTH, HEIGHT = 203, 151
-SKIN: dict[str, Any] = {"base_colour_texture": checker(3)}
 
 LENSES: dict[str, dict[str, Any]] = {
     "plumb_bob": {
@@ -110,49 +104,6 @@ def camera_through(name: str, pose: Pose = FORWARD, **more: Any) -> Camera:
     return Camera(intrinsics=CameraIntrinsics(**numbers), pose=pose)
 
 
-def room_of_things() -> list[Thing]:
-    """A closed room of six walls, and boxes all around the middle."""
-    wall = model_of(wall_mesh(12.0, 12.0), **SKIN)
-    things = [
-        Thing(wall, Pose.from_rpy_deg((3.0, 0.0, 0.0), (0.0, 0.0, 0.0))),
-        Thing(wall, Pose.from_rpy_deg((-4.0, 0.0, 0.0), (0.0, 0.0, 180.0))),
-        Thing(wall, Pose.from_rpy_deg((0.0, 3.5, 0.0), (0.0, 0.0, 90.0))),
-        Thing(wall, Pose.from_rpy_deg((0.0, -2.5, 0.0), (0.0, 0.0, -90.0))),
-        Thing(wall, Pose.from_rpy_deg((0.0, 0.0, -1.6), (0.0, 90.0, 0.0))),
-        Thing(wall, Pose.from_rpy_deg((0.0, 0.0, 1.9), (0.0, -90.0, 0.0))),
-    ]
-    box = model_of(box_mesh(0.5), **SKIN)
-    for number in range(16):
-        turn = 0.39 * number
-        place = (1.8 * np.cos(turn), 1.6 * np.sin(turn), 0.25 * (number % 5) - 0.6)
-        things.append(Thing(box, Pose.from_rpy_deg(place, (7 * number, 11 * number, 13 * number))))
-    return things
-
-
-@pytest.fixture(scope="module")
-def native() -> Iterator[NativeRenderer]:
-    """A native renderer."""
-    made = NativeRenderer()
-    yield made
-    made.close()
-
-
-@pytest.fixture(scope="module")
-def room_01() -> Iterator[WorldSnapshot]:
-    """A furnished room after a second, when things have moved."""
-    world = SceneLibrary().build("room_01")
-    world.step(240)
-    yield world.snapshot()
-    world.close()
-
-
-def seen(
-    renderer: NativeRenderer, scene: WorldSnapshot, camera: Camera, *views: str
-) -> dict[str, NDArray[Any]]:
-    """Views without a past."""
-    return dict(renderer.render(scene, None, camera, views).views)
-
-
 @pytest.mark.parametrize("name", LENSES)
 def test_rays_between_pixels_are_those_of_the_lens(name: str) -> None:
     """To 1e-4 px beside what the law says there; those of pixels' centres are the same bytes."""
@@ -204,7 +155,7 @@ def test_a_furnished_room_is_what_rays_meet(
         views = seen(native, room_01, camera, "instance", "range")
         ids, distance, masked = rays.look(camera)
         valid = np.isfinite(unit_rays(camera.intrinsics)[..., 2])
-        inside = valid & ~_near_edges(ids, distance) & ~_grown(masked)
+        inside = valid & ~near_edges(ids, distance, 0.002) & ~grown(masked)
         assert inside.sum() > 0.4 * valid.sum()
         assert (views["instance"][inside] == ids[inside]).all()
         np.testing.assert_allclose(views["range"][inside], distance[inside], rtol=1e-4)
@@ -239,7 +190,7 @@ def test_a_lens_with_a_pin_holes_rays_makes_its_views(
         other = seen(native, room_01, replace(bent, picture=picture), *names)
         differs = plain["instance"] != other["instance"]
         assert differs.sum() <= 3
-        same = ~_grown(differs)
+        same = ~grown(differs)
         for view in ("depth", "range"):
             off = np.abs(other[view][same] / plain[view][same].astype(np.float64) - 1.0)
             assert (off > 1e-6).mean() < 1e-3
@@ -279,22 +230,9 @@ def test_what_the_lens_does_not_see_is_black(native: NativeRenderer, smooth: boo
 @pytest.mark.parametrize("motion", ["turn", "shift", "things", "still"])
 def test_flow_is_what_arithmetic_says(native: NativeRenderer, name: str, motion: str) -> None:
     """To 0.01 px away from edges; exactly 0 where nothing has moved."""
-    things = room_of_things()
-    contents = contents_of(things)
-    poses = [thing.pose for thing in things]
-    if motion == "things":
-        poses[6:] = [
-            Pose.from_rpy_deg(np.add(pose.position_m, (0.02, -0.03, 0.01)), (9 * k, 12 * k, 14 * k))
-            for k, pose in enumerate(poses[6:])
-        ]
-    before = snapshot_of(things, contents=contents)
-    after = snapshot_of(moved(things, *poses), contents=contents, time_ns=FRAME_NS)
-    then = camera_through(name, Pose.from_rpy_deg((0.0, 0.1, 0.0), (2.0, 5.0, 10.0)))
-    ends = {
-        "turn": Pose.from_rpy_deg((0.0, 0.1, 0.0), (3.0, 7.0, 13.0)),
-        "shift": Pose.from_rpy_deg((0.03, 0.06, 0.02), (2.0, 5.0, 10.0)),
-    }
-    now = replace(then, pose=ends.get(motion, then.pose))
+    before, after = room_that_moves(motion == "things")
+    then = camera_through(name, CAMERA_PATHS["still"])
+    now = replace(then, pose=CAMERA_PATHS.get(motion, then.pose))
     past = Observation(snapshot=before, camera=then)
     views = dict(native.render(after, past, now, ("flow", "flow_valid", "occlusion")).views)
     hits = cast(after, now)
@@ -422,19 +360,3 @@ def test_the_window_around_openings_changes_no_pixel(
         for view, values in whole.items():
             np.testing.assert_array_equal(made[view], values, err_msg=f"{view} of view {number}")
     assert narrowed > 5
-
-
-def _grown(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    return cv2.dilate(mask.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
-
-
-def _near_edges(ids: NDArray[Any], distance: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which pixels are beside another instance, or where distances bend."""
-    kernel = np.ones((3, 3), np.uint8)
-    as_float = ids.astype(np.float32)
-    other = cv2.dilate(as_float, kernel) != cv2.erode(as_float, kernel)
-    inverse = np.where(np.isfinite(distance), 1.0 / distance, 0.0)
-    bend = np.zeros(ids.shape)
-    bend[:, 1:-1] += np.abs(inverse[:, 2:] - 2.0 * inverse[:, 1:-1] + inverse[:, :-2])
-    bend[1:-1] += np.abs(inverse[2:] - 2.0 * inverse[1:-1] + inverse[:-2])
-    return np.asarray(other | _grown(bend > 0.002))

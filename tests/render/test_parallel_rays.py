@@ -23,7 +23,6 @@ from sailenv_ros.rays.scene_geometry import SceneGeometry
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
-from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.simulation import Simulation
 from sailenv_ros.simulation.view_planes import view_planes
 from sailenv_ros.types.agents import AgentSpec
@@ -31,10 +30,17 @@ from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
-from tests.render.test_lens_views import SKIN, _grown, room_of_things, seen
 from tests.render.test_picture import gallery
 from tests.support.embree_cast import RayCast
+from tests.support.picture_edges import grown
 from tests.support.ray_cast import cast, flow_by_arithmetic, points_met
+from tests.support.room_of_things import (
+    CAMERA_PATHS,
+    SKIN,
+    room_of_things,
+    room_that_moves,
+    seen,
+)
 from tests.support.tiny_scenes import (
     FORWARD,
     FRAME_NS,
@@ -43,7 +49,6 @@ from tests.support.tiny_scenes import (
     box_mesh,
     contents_of,
     model_of,
-    moved,
     snapshot_of,
     wall_mesh,
 )
@@ -67,23 +72,6 @@ def camera_at(pose: Pose = FORWARD, scale: float = 40.0, **more: Any) -> Camera:
 SLANTED = Pose.from_rpy_deg((0.1, 0.2, 0.1), (3.0, 8.0, 20.0))
 PLAN = Pose.from_rpy_deg((0.1, -0.2, 2.2), DOWN)
 CORNER = look_at((1.1, 0.4, 1.5), (-1.2, -0.3, 0.8))
-
-
-@pytest.fixture(scope="module")
-def native() -> Iterator[NativeRenderer]:
-    """A native renderer."""
-    made = NativeRenderer()
-    yield made
-    made.close()
-
-
-@pytest.fixture(scope="module")
-def room_01() -> Iterator[WorldSnapshot]:
-    """A furnished room after a second, when things have moved."""
-    world = SceneLibrary().build("room_01")
-    world.step(240)
-    yield world.snapshot()
-    world.close()
 
 
 def test_ids_depth_and_normals_are_what_rays_meet(native: NativeRenderer) -> None:
@@ -120,7 +108,7 @@ def test_a_furnished_room_is_what_rays_meet(
     camera = camera_at(pose, 33.0)
     views = seen(native, room_01, camera, "instance", "depth")
     ids, depth, masked = RayCast(room_01).look(camera)
-    inside = ~_near_edges(ids, depth) & ~_grown(masked)
+    inside = ~_near_edges(ids, depth) & ~grown(masked)
     assert inside.sum() > 0.5 * inside.size
     assert (views["instance"][inside] == ids[inside]).all()
     np.testing.assert_allclose(views["depth"][inside], depth[inside], rtol=1e-4)
@@ -162,22 +150,9 @@ def test_rays_begin_at_the_cameras_plane(native: NativeRenderer) -> None:
 @pytest.mark.parametrize("kind", ["turn", "shift", "things", "still"])
 def test_flow_is_what_arithmetic_says(native: NativeRenderer, kind: str) -> None:
     """To 0.01 px away from edges; exactly 0 where nothing has moved."""
-    things = room_of_things()[1:]
-    contents = contents_of(things)
-    poses = [thing.pose for thing in things]
-    if kind == "things":
-        poses[5:] = [
-            Pose.from_rpy_deg(np.add(pose.position_m, (0.02, -0.03, 0.01)), (9 * k, 12 * k, 14 * k))
-            for k, pose in enumerate(poses[5:])
-        ]
-    before = snapshot_of(things, contents=contents)
-    after = snapshot_of(moved(things, *poses), contents=contents, time_ns=FRAME_NS)
-    then = camera_at(Pose.from_rpy_deg((0.0, 0.1, 0.0), (2.0, 5.0, 10.0)))
-    ends = {
-        "turn": Pose.from_rpy_deg((0.0, 0.1, 0.0), (3.0, 7.0, 13.0)),
-        "shift": Pose.from_rpy_deg((0.03, 0.06, 0.02), (2.0, 5.0, 10.0)),
-    }
-    now = replace(then, pose=ends.get(kind, then.pose))
+    before, after = room_that_moves(kind == "things", walls=5)
+    then = camera_at(CAMERA_PATHS["still"])
+    now = replace(then, pose=CAMERA_PATHS.get(kind, then.pose))
     past = Observation(snapshot=before, camera=then)
     views = dict(native.render(after, past, now, ("flow", "flow_valid", "occlusion")).views)
     hits = cast(after, now)
@@ -361,7 +336,7 @@ def test_a_mirror_shows_what_stands_before_it(native: NativeRenderer) -> None:
     mirrored = seen(native, shown, camera, "rgb", "instance")
     direct = seen(native, plain, behind, "rgb")["rgb"][:, ::-1]
     inside = mirrored["instance"] == 3
-    inside &= ~_grown(~inside)
+    inside &= ~grown(~inside)
     assert inside.sum() > 5000
     off = np.abs(mirrored["rgb"][inside].astype(int) - direct[inside])
     assert direct[inside].std() > 20.0
@@ -379,7 +354,7 @@ def _near_edges(ids: NDArray[Any], depth: NDArray[np.float64]) -> NDArray[np.boo
                 place = [slice(None), slice(None)]
                 place[axis] = slice(at, at + mask.shape[axis])
                 beside[tuple(place)] |= mask
-    return _grown(beside)
+    return grown(beside)
 
 
 # -- through a simulation ------------------------------------------------------------------

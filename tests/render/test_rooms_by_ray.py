@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import cv2
 import numpy as np
 import pytest
 
@@ -14,6 +13,7 @@ from sailenv_ros.types.geometry import look_at
 from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.render.conftest import Render
 from tests.support.embree_cast import RayCast
+from tests.support.picture_edges import grown, near_edges
 
 pytestmark = pytest.mark.gl
 
@@ -42,27 +42,10 @@ def test_labels_and_depth_are_what_rays_meet(room: WorldSnapshot, render: Render
         )
         views = render(room, camera, "instance", "depth", "category")
         ids, depth, masked = rays.look(camera)
-        inside = ~_near_edges(ids, depth) & ~_grown(masked)
+        inside = ~near_edges(ids, depth, 0.0005) & ~grown(masked)
         compared += int(inside.sum())
         assert (views["instance"][inside] == ids[inside]).all()
         table = room.contents.category_of_instance
         assert (views["category"][inside] == table[ids[inside]]).all()
         np.testing.assert_allclose(views["depth"][inside], depth[inside], rtol=1e-4)
     assert compared > 0.6 * VIEWS_PER_ROOM * WIDTH * HEIGHT
-
-
-def _grown(mask: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
-    return cv2.dilate(mask.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
-
-
-def _near_edges(ids: np.ndarray, depth: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
-    """Return which pixels are beside another instance, or another surface of the same one."""
-    kernel = np.ones((3, 3), np.uint8)
-    as_float = ids.astype(np.float32)
-    other = cv2.dilate(as_float, kernel) != cv2.erode(as_float, kernel)
-    # A surface seen at a slant changes its inverse depth evenly: no second difference.
-    inverse = np.where(np.isfinite(depth), 1.0 / depth, 0.0)
-    bend = np.zeros(ids.shape)
-    bend[:, 1:-1] += np.abs(inverse[:, 2:] - 2.0 * inverse[:, 1:-1] + inverse[:, :-2])
-    bend[1:-1] += np.abs(inverse[2:] - 2.0 * inverse[1:-1] + inverse[:-2])
-    return other | _grown(bend > 0.0005)
