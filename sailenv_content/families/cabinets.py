@@ -21,6 +21,7 @@ __all__ = [
     "CABINET_MATERIALS",
     "SCHEMES",
     "cabinet_body",
+    "cabinet_door",
     "cabinet_drawer",
     "divided",
     "outer_doors",
@@ -117,19 +118,15 @@ def cabinet_drawer(
     )
 
 
+def cabinet_door(b: PieceBuilder, v: Values, name: str, panel: Box, hinge: str) -> None:
+    """Add a door of the cabinet's materials, with its hinge at one side."""
+    door(b, name, v.scheme[1], v.front, panel, hinge=hinge, handle_kind=v.handle, metal_=v.metal)
+
+
 def outer_doors(b: PieceBuilder, v: Values, right: Box, left: Box, *, prefix: str = "") -> None:
     """Add two doors with their hinges at the outer sides."""
     for side, panel in (("right", right), ("left", left)):
-        door(
-            b,
-            f"{prefix}{side} door",
-            v.scheme[1],
-            v.front,
-            panel,
-            hinge=side,
-            handle_kind=v.handle,
-            metal_=v.metal,
-        )
+        cabinet_door(b, v, f"{prefix}{side} door", panel, side)
 
 
 def divided(

@@ -16,6 +16,7 @@ from gymnasium.vector import AsyncVectorEnv, SyncVectorEnv, VectorEnv
 
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.gym.registration import ENVIRONMENTS, register_environments
+from sailenv_ros.gym.wrappers import room_env, spaces_of
 
 __all__ = ["LeRobotEnv", "make_env"]
 
@@ -35,8 +36,7 @@ class LeRobotEnv(gymnasium.Wrapper[dict[str, Any], Any, Any, Any]):
 
     def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
         super().__init__(env)
-        told: Any = env.observation_space
-        views = env.get_wrapper_attr("eye").views
+        told, views = spaces_of(env), room_env(env).eye.views
         if "rgb" not in views:
             env.close()  # nobody else has it
             raise UnknownName("view", "rgb", views)

@@ -12,7 +12,7 @@ from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.gym.retina import Retina
 from sailenv_ros.gym.room_env import STEP_NS, Arrays, RoomEnv
 
-__all__ = ["LogPolarRetina", "Motion"]
+__all__ = ["LogPolarRetina", "Motion", "room_env", "spaces_of"]
 
 
 class LogPolarRetina(gymnasium.ObservationWrapper[Arrays, Any, Arrays]):
@@ -29,10 +29,10 @@ class LogPolarRetina(gymnasium.ObservationWrapper[Arrays, Any, Arrays]):
 
     def __init__(self, env: gymnasium.Env[Arrays, Any], rings: int = 20, wedges: int = 32) -> None:
         super().__init__(env)
-        eye = _room_env(env).eye
+        eye = room_env(env).eye
         self._views = eye.views
         self._retina = Retina(eye.intrinsics.width, eye.intrinsics.height, rings, wedges)
-        inside = _spaces_of(env)
+        inside = spaces_of(env)
         for name in self._views:
             box = inside[name]
             assert isinstance(box, spaces.Box)
@@ -66,8 +66,8 @@ class Motion(gymnasium.ObservationWrapper[Arrays, Any, Arrays]):
 
     def __init__(self, env: gymnasium.Env[Arrays, Any]) -> None:
         super().__init__(env)
-        inside = _spaces_of(env)
-        if "flow" not in _room_env(env).eye.views:
+        inside = spaces_of(env)
+        if "flow" not in room_env(env).eye.views:
             raise InvalidState('motion is that of the view "flow"; add it to the views')
         flow = inside["flow"]
         assert isinstance(flow, spaces.Box)
@@ -82,7 +82,8 @@ class Motion(gymnasium.ObservationWrapper[Arrays, Any, Arrays]):
         return {**observation, "motion": length.astype(np.float32)}
 
 
-def _spaces_of(env: gymnasium.Env[Any, Any]) -> dict[str, spaces.Space[Any]]:
+def spaces_of(env: gymnasium.Env[Any, Any]) -> dict[str, spaces.Space[Any]]:
+    """Return the spaces of what an environment observes, by name; a new mapping."""
     space: Any = env.observation_space
     return dict(space.spaces)
 
@@ -92,7 +93,14 @@ def _dict_space(inside: dict[str, spaces.Space[Any]]) -> spaces.Space[Arrays]:
     return cast("spaces.Space[Arrays]", spaces.Dict(inside))
 
 
-def _room_env(env: gymnasium.Env[Any, Any]) -> RoomEnv:
+def room_env(env: gymnasium.Env[Any, Any]) -> RoomEnv:
+    """Return the environment of this package inside of wrappers.
+
+    Raises
+    ------
+    InvalidRequest
+        If there is none.
+    """
     inner = env.unwrapped
     if not isinstance(inner, RoomEnv):
         raise InvalidRequest("env", type(inner).__name__, "an environment of sailenv_ros.gym")

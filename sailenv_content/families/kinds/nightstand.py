@@ -9,11 +9,12 @@ from sailenv_content.families.cabinets import (
     BOARD_M,
     CABINET_MATERIALS,
     cabinet_body,
+    cabinet_door,
     cabinet_drawer,
 )
 from sailenv_content.families.contents import book_row, folded
 from sailenv_content.families.family import Family, Style
-from sailenv_content.families.fronts import CLEARANCE_M, door
+from sailenv_content.families.fronts import CLEARANCE_M
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import leg, shelf
 from sailenv_content.families.materials import WOODS, metal, paint
@@ -54,16 +55,7 @@ def _door(b: PieceBuilder, v: Values) -> None:
     shelf(b, v.inner, room, float(room.middle[2]), setback=0.04)
     for row in room.rows([1.0, 1.0], BOARD_M):
         folded(b, row.within((0.02, 0.02, 0.001), (0.06, 0.02, 0.03)))
-    door(
-        b,
-        "door",
-        v.scheme[1],
-        v.front,
-        front,
-        hinge=v.hinge,
-        handle_kind=v.handle,
-        metal_=v.metal,
-    )
+    cabinet_door(b, v, "door", front, v.hinge)
 
 
 def _wall(b: PieceBuilder, v: Values) -> None:

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from sailenv_content.families.appliances import gas_hob, glass_hob, hollow_case, knob_row, oven
 from sailenv_content.families.builder import PieceBuilder
-from sailenv_content.families.cabinets import BOARD_M, CABINET_MATERIALS, cabinet_drawer, unit
+from sailenv_content.families.cabinets import (
+    BOARD_M,
+    CABINET_MATERIALS,
+    cabinet_door,
+    cabinet_drawer,
+    unit,
+)
 from sailenv_content.families.contents import plates
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, door
@@ -101,16 +107,7 @@ def _column(b: PieceBuilder, v: Values) -> None:
     upper = Box((*inside.low[:2], z[1] + BOARD_M), inside.high)
     shelf(b, v.inner, upper, float(upper.middle[2]), setback=0.03)
     plates(b, Box(upper.low, (*upper.high[:2], upper.middle[2] - 0.02)))
-    door(
-        b,
-        "upper door",
-        v.scheme[1],
-        v.front,
-        above,
-        hinge=v.hinge,
-        handle_kind=v.handle,
-        metal_=v.metal,
-    )
+    cabinet_door(b, v, "upper door", above, v.hinge)
 
 
 def _retro(b: PieceBuilder, v: Values) -> None:

@@ -2,7 +2,7 @@
 
 https://docs.nerf.studio/quickstart/data_conventions.html: poses are world-from-camera with x right,
 y up, z backward; the world has z up; depth is in millimetres; cx and cy count from the corner of
-the picture.
+the picture, as COLMAP does.
 """
 
 from __future__ import annotations
@@ -19,12 +19,10 @@ from sailenv_ros.dataset.formats.images import scaled_depth
 from sailenv_ros.dataset.formats.photogrammetry import PointTracks, PosedPicture, PosedPictures
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.truth.ply import ply_bytes
+from sailenv_ros.scene.calibration_files import COLMAP_CORNER_PX
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 
 __all__ = ["NerfstudioExport"]
-
-CORNER_PX = 0.5
-"""(0, 0) is the corner of the picture, ours the centre of the first pixel."""
 
 PER_METRE = 1000.0
 """Steps of the depth files."""
@@ -96,7 +94,7 @@ def _lens(lens: CameraIntrinsics) -> dict[str, Any]:
         "h": lens.height,
         "fl_x": lens.fx,
         "fl_y": lens.fy,
-        "cx": lens.cx + CORNER_PX,
-        "cy": lens.cy + CORNER_PX,
+        "cx": lens.cx + COLMAP_CORNER_PX,
+        "cy": lens.cy + COLMAP_CORNER_PX,
         **coefficients,
     }
