@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -20,11 +20,14 @@ from sailenv_content.families.materials import PieceMaterial
 from sailenv_content.families.shaping import Floats, board, placed
 from sailenv_ros.assets.hulls import convex_hull
 from sailenv_ros.types.labels import PART_MARK
-from sailenv_ros.types.model import BoxShape, CollisionShape, Mesh
+from sailenv_ros.types.model import BoxShape, CollisionShape, ConvexShape, Mesh
 
 __all__ = ["Joint", "Unfit", "Component", "PieceBuilder"]
 
 Vector3 = tuple[float, float, float]
+LEAST_SHIFT_M = 1e-5
+"""Height above or below the floor that is left as it is [m]."""
+
 Collides = Literal["hull", "box", "none"]
 
 
@@ -160,6 +163,26 @@ class PieceBuilder:
             yield
         finally:
             self._frame = before
+
+    def set_down(self) -> None:
+        """Move all so that the lowest point that is drawn is at z = 0: legs are cut off aslant."""
+        low = min(
+            (float(mesh.positions[:, 2].min()) for one in self.components for _, mesh in one.meshes),
+            default=0.0,
+        )
+        by = np.array([0.0, 0.0, -low])
+        if abs(low) < LEAST_SHIFT_M:
+            return
+        for one in self.components:
+            one.meshes = [(material, placed(mesh, by)) for material, mesh in one.meshes]
+            one.shapes = [_shifted(shape, by) for shape in one.shapes]
+            one.moment = one.moment + one.mass_kg * by
+            if one.joint is not None:
+                x, y, z = (np.asarray(one.joint.origin_m) + by).tolist()
+                one.joint = replace(one.joint, origin_m=(x, y, z))
+        self.keypoints = {
+            name: (x, y, z - low) for name, (x, y, z) in self.keypoints.items()
+        }
 
     # -- parts -----------------------------------------------------------------------------
 
@@ -300,6 +323,14 @@ class _Frame:
             return vector
         turn = Rotation.from_euler("z", self.yaw_deg, degrees=True)
         return np.asarray(turn.apply(vector), np.float64)
+
+
+def _shifted(shape: CollisionShape, by: Floats) -> CollisionShape:
+    if isinstance(shape, ConvexShape):
+        return ConvexShape(points=shape.points + by)
+    assert isinstance(shape, BoxShape)  # no other is made here
+    x, y, z = (np.asarray(shape.centre_m) + by).tolist()
+    return replace(shape, centre_m=(x, y, z))
 
 
 def _box_shape(size: NDArray[Any], at: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> BoxShape:

@@ -17,7 +17,7 @@ from sailenv_ros.errors import AssetError
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import Asset, AssetPart, Material, Mesh, Model, ModelPart, MovingPart
 
-__all__ = ["MAX_DRAWS", "Piece", "make_piece"]
+__all__ = ["MAX_DRAWS", "Piece", "drawn_values", "make_piece"]
 
 MAX_DRAWS = 16
 """Draws of one seed before the family is given up."""
@@ -46,6 +46,23 @@ class Piece:
     rejected: tuple[str, ...]
 
 
+def drawn_values(family: Family, name: PieceName, attempt: int = 0) -> Values:
+    """Return the parameters of a piece by one of its draws; makes nothing.
+
+    Raises
+    ------
+    AssetError
+        If a parameter is impossible.
+    """
+    owner = f"{family.name}~{name.style}"
+    rng = np.random.default_rng(_key(owner, name.seed, attempt))
+    return drawn(owner, family.styles[name.style].parameters, rng)
+
+
+def _key(owner: str, seed: int, attempt: int) -> list[int]:
+    return [zlib.crc32(owner.encode()), seed, attempt]
+
+
 def make_piece(family: Family, name: PieceName) -> Piece:
     """Make a piece; the same bytes for the same name.
 
@@ -58,11 +75,12 @@ def make_piece(family: Family, name: PieceName) -> Piece:
     owner = f"{family.name}~{name.style}"
     rejected: list[str] = []
     for attempt in range(MAX_DRAWS):
-        key = [zlib.crc32(owner.encode()), name.seed, attempt]
-        values = drawn(owner, style.parameters, np.random.default_rng(key))
-        builder = PieceBuilder(np.random.default_rng([*key, 1]))
+        values = drawn_values(family, name, attempt)
+        key = [*_key(owner, name.seed, attempt), 1]
+        builder = PieceBuilder(np.random.default_rng(key))
         try:
             style.make(builder, values)
+            builder.set_down()
             asset = _asset(family, name, builder)
             _check(family, asset)
         except Unfit as problem:

@@ -18,6 +18,7 @@ from sailenv_ros.types.model import Material, Texture
 __all__ = [
     "FABRICS",
     "LEATHERS",
+    "METAL_NAMES",
     "WOODS",
     "PieceMaterial",
     "colour_of",
@@ -187,4 +188,5 @@ FABRICS = tuple(
         "#a5604a",
     )
 )
+METAL_NAMES = frozenset(_METALS)
 LEATHERS = tuple(leather(c) for c in ("#6b3f24", "#2a2624", "#a0703f", "#d8cdb8"))

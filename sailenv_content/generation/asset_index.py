@@ -19,6 +19,12 @@ __all__ = ["AssetIndex"]
 
 Floats = NDArray[np.float64]
 
+LIGHT_GAP_M = 0.03
+"""Between what glows of a lamp and its light [m]."""
+
+MAX_KEPT = 4096
+"""Most sizes that are kept: pieces of families have names without end."""
+
 
 class AssetIndex:
     """Sizes of objects, each computed once.
@@ -30,7 +36,8 @@ class AssetIndex:
 
     def __init__(self, assets: AssetLibrary) -> None:
         self._assets = assets
-        self._bounds = lru_cache(maxsize=None)(self._measure)
+        self._bounds = lru_cache(maxsize=MAX_KEPT)(self._measure)
+        self._glow = lru_cache(maxsize=MAX_KEPT)(self._measure_glow)
 
     @property
     def assets(self) -> AssetLibrary:
@@ -48,6 +55,23 @@ class AssetIndex:
     def back_m(self, name: str, scale: float = 1.0) -> float:
         """Return how far what is drawn reaches behind the origin [m]; negative for behind."""
         return float(self.asset(name).model.bounds()[0, 0] * scale)
+
+    def light_m(self, name: str, scale: float, *, up: bool) -> tuple[float, float, float]:
+        """Return where a lamp's light is, in the body frame [m].
+
+        It is above or below the middle of what glows, so that the shade does not keep it in; of a
+        lamp that has nothing that glows, of the whole.
+        """
+        low, high = self._glow(name) * scale
+        x, y = ((low + high) / 2.0)[:2].tolist()
+        return x, y, float(high[2] + LIGHT_GAP_M if up else low[2] - LIGHT_GAP_M)
+
+    def _measure_glow(self, name: str) -> Floats:
+        parts = [part for part in self.asset(name).model.parts if any(part.material.glow)]
+        if not parts:
+            return self.bounds(name)
+        points = np.concatenate([part.mesh.positions for part in parts]).astype(np.float64)
+        return np.stack([points.min(axis=0), points.max(axis=0)])
 
     def _measure(self, name: str) -> Floats:
         asset = self.asset(name)

@@ -83,6 +83,7 @@ def unseen(
         number: body
         for number, body in world.bodies_by_id.items()
         if body.placement.entry is not None
+        and not body.placement.asset.opens  # behind a door that is shut, it may be hidden
     }
     # An object is seen where a part of it is.
     wholes = {drawn.instance.id: drawn.instance.parent for drawn in snapshot.contents.instances}

@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from sailenv_content.generation.asset_index import AssetIndex
 from sailenv_content.generation.checks import Fault
 from sailenv_content.generation.items import Item
 from sailenv_content.generation.plan import RoomPlan
 from sailenv_content.generation.shells import Shell
 from sailenv_ros.authoring.room_rules.rule_models import KindFile
 from sailenv_ros.scene.spec import SceneSpec
+from sailenv_ros.world.opening_pieces import moving_name
 
 __all__ = ["Draft"]
 
@@ -28,6 +30,7 @@ class Draft:
     shell: Shell
     plan: RoomPlan
     items: list[Item]
+    stock: AssetIndex
     waypoints: Sequence[tuple[float, ...]] = ()
 
     def spec_of(self, data: dict[str, Any]) -> SceneSpec:
@@ -48,10 +51,11 @@ class Draft:
 
     def take_out(self, names: Sequence[str]) -> bool:
         """Take out the least of some objects with what lies on it; say if that can be done."""
-        present = [item for item in self.items if item.name in names]
+        blamed = {self._owners().get(name, name) for name in names}
+        present = [item for item in self.items if item.name in blamed]
         if not present:
             # Taken out already, with what carried it, or a part of the room alone.
-            known = any(name in names for name in self._gone)
+            known = any(name in blamed or name in names for name in self._gone)
             return known
         loose = [item for item in present if not item.needed]
         if not loose:
@@ -64,9 +68,17 @@ class Draft:
             if not more:
                 break
             gone |= more
+        self._gone |= gone | {part for part, owner in self._owners().items() if owner in gone}
         self.items = [item for item in self.items if item.name not in gone]
-        self._gone |= gone
         return True
+
+    def _owners(self) -> dict[str, str]:
+        """Return the piece of each door and drawer, by their names."""
+        return {
+            moving_name(item.name, part.name): item.name
+            for item in self.items
+            for part in self.stock.asset(item.asset).moving
+        }
 
     _gone: set[str] = field(default_factory=set)
     _settled: set[str] = field(default_factory=set)

@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from sailenv_content.families.names import has_form
 from sailenv_content.generation.asset_index import AssetIndex
 from sailenv_content.generation.companion_spots import CompanionSpots
 from sailenv_content.generation.items import Item, Namer
+from sailenv_content.generation.pieces import PieceChooser, RoomStyle
 from sailenv_content.generation.plan import Area, Block, RoomPlan
 from sailenv_content.generation.positions import Positioner
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
@@ -21,6 +23,9 @@ from sailenv_ros.authoring.room_rules.rule_models import CompanionRule, Furnitur
 __all__ = ["Furnisher"]
 
 TRIES = 60
+TRIES_OF_ONE = 12
+"""Places that are tried for a piece before another one is."""
+
 COMPANION_TRIES = 8
 FROM_WALL_M = 0.07
 LEAST_GAP_M = 0.001
@@ -64,6 +69,7 @@ class Furnisher:
     namer: Namer
     skirting_m: float
     items: list[Item] = field(default_factory=list)
+    pieces: PieceChooser = field(init=False)
     positioner: Positioner = field(init=False)
     spots: CompanionSpots = field(init=False)
 
@@ -71,6 +77,7 @@ class Furnisher:
         self.positioner = Positioner(
             area=self.area, stock=self.stock, dice=self.dice, skirting_m=self.skirting_m
         )
+        self.pieces = PieceChooser(self.dice, RoomStyle.drawn(self.dice))
         self.spots = CompanionSpots(self.positioner)
 
     def furnish(self, pieces: Sequence[PieceRule]) -> bool:
@@ -95,9 +102,12 @@ class Furnisher:
     def place(self, name: str, *, needed: bool = False) -> bool:
         """Place a piece with what belongs to it; say if there was a place."""
         rule = self.rules.furniture[name]
-        for _ in range(TRIES):
+        asset = ""
+        for number in range(TRIES):
             group = _Group()
-            item = self._proposed(name, rule, group)
+            if number % TRIES_OF_ONE == 0:
+                asset = self._fresh(rule, name)
+            item = self._proposed(name, rule, asset, group)
             if item is None or not self._with_companions(item, rule, group):
                 continue
             if self.plan.connects(each.block for each in group.items):
@@ -120,9 +130,11 @@ class Furnisher:
         )
         self.items.extend(group.items)
 
-    def _proposed(self, name: str, rule: FurnitureRule, group: _Group) -> Item | None:
+    def _proposed(
+        self, name: str, rule: FurnitureRule, asset: str, group: _Group
+    ) -> Item | None:
         """Draw a place for a piece; None if it cannot stand there."""
-        asset, scale = self._fresh(rule), round(self.dice.between(rule.scale), 2)
+        scale = round(self.dice.between(rule.scale), 2)
         if rule.at in ("wall", "corner") or rule.height is not None:
             item = self.positioner.at_wall(rule, asset, scale, corner=rule.at == "corner")
         elif rule.at == "ceiling":
@@ -132,10 +144,17 @@ class Furnisher:
             item = self.positioner.in_the_room(rule, asset, scale)
         return item if item is not None and self._fits(item, rule, name, group) else None
 
-    def _fresh(self, rule: FurnitureRule) -> str:
-        """Return an object of a piece, one that the room has not got yet where there is one."""
-        present = {item.asset for item in self.items}
-        return self.dice.one([a for a in rule.assets if a not in present] or rule.assets)
+    def _fresh(self, rule: FurnitureRule, name: str) -> str:
+        """Return an object of a piece, one that the room has not got yet where there is one.
+
+        Pieces from seeds may be asked to be alike.
+        """
+        present = {item.asset: item.base for item in self.items}
+        alike = [asset for asset, base in present.items() if base == name and has_form(asset)]
+        if alike and self.dice.chance(rule.alike):
+            return alike[-1]
+        fresh = [asset for asset in rule.assets if asset not in present] or rule.assets
+        return self.pieces.chosen(self.dice.one(fresh))
 
     def _fits(self, item: Item, rule: FurnitureRule, name: str, group: _Group) -> bool:
         """Return whether a piece can stand where it was drawn; it is in the group then."""
@@ -186,7 +205,7 @@ class Furnisher:
     def _companions(self, item: Item, companion: CompanionRule, group: _Group) -> int:
         """Place the companions of one rule; return how many found a place."""
         rule = self.rules.furniture[companion.put]
-        asset = self._fresh(rule)  # all of them alike
+        asset = self._fresh(rule, companion.put)  # all of them alike
         placed, count = 0, self.dice.whole(companion.count)
         for spot in self.spots.spots(item, companion, rule, asset, count, group.ends):
             if placed == count:

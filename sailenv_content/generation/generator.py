@@ -181,7 +181,7 @@ class Generator:
         laid = lay_things(furniture, self._rules, self._stock, dice("things"), namer)
         return Draft(
             kind=kind, file=file, seed=seed, attempt=attempt, shell=shell, plan=plan,
-            items=_beside_their_carriers(furniture, laid),
+            items=_beside_their_carriers(furniture, laid), stock=self._stock,
         )  # fmt: skip
 
     def _lift_from_rugs(self, items: Sequence[Item]) -> None:

@@ -14,7 +14,15 @@ from sailenv_content.generation.asset_index import AssetIndex
 from sailenv_content.generation.plan import Block, WallSide
 from sailenv_ros.authoring.room_rules.rule_models import FurnitureRule
 
-__all__ = ["Item", "Namer", "block_of", "clear_blocks"]
+__all__ = ["Item", "Lamp", "Namer", "block_of", "clear_blocks"]
+
+
+@dataclass(frozen=True, slots=True)
+class Lamp:
+    """Where the light of a lamp is, in the axes of its body [m], and its power [W/sr]."""
+
+    at: tuple[float, float, float]
+    power: float
 
 
 @dataclass(slots=True, kw_only=True)
@@ -49,8 +57,7 @@ class Item:
         Chairs around a table.
     clear : tuple of Block
         Floor that it keeps free.
-    light : tuple of float or None
-        Height of its lamp above its origin [m] and radiant intensity [W/sr].
+    light : Lamp or None
     """
 
     name: str
@@ -69,12 +76,19 @@ class Item:
     base: str = ""
     around: list[Item] = field(default_factory=list)
     clear: tuple[Block, ...] = ()
-    light: tuple[float, float] | None = None
+    light: Lamp | None = None
 
     @property
     def is_flat(self) -> bool:
         """Whether others may stand on it."""
         return self.rule is not None and self.rule.flat
+
+    @property
+    def light_xy(self) -> tuple[float, float]:
+        """Where its light is in the room, seen from above [m]."""
+        ahead, aside = (0.0, 0.0) if self.light is None else self.light.at[:2]
+        c, s = math.cos(math.radians(self.yaw_deg)), math.sin(math.radians(self.yaw_deg))
+        return self.x + c * ahead - s * aside, self.y + s * ahead + c * aside
 
     def described(self) -> dict[str, Any]:
         """Return its keys in a scene file."""

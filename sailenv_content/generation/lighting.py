@@ -106,24 +106,22 @@ def _lamps(
     for item in items:
         if item.light is None or count == MAX_LAMPS:
             continue
-        up, strength = item.light
+        up, strength = item.light.at[2], item.light.power
         ceiling = item.rule is not None and item.rule.at == "ceiling"
         if not ceiling and not rule.lamps:
             continue
         count += 1
         z = heights.get(item.name, 0.0) + up
         if ceiling:
-            z -= 0.05
             small = item.block.high - item.block.low < 0.2
             if small:
                 strength = round(dice.between(rule.ceiling) * _share(item, areas), 2)
-            z -= _BELOW_CEILING_M - 0.05 if small else 0.0
+            z -= _BELOW_CEILING_M if small else 0.0
+        x, y = item.light_xy
         yield {
             "name": f"light of {item.name}",
             "type": "point",
-            "position": _rounded(
-                item.block.x if ceiling else item.x, item.block.y if ceiling else item.y, z
-            ),
+            "position": _rounded(x, y, z),
             "colour": list(rule.lamp_colour),
             "intensity": strength,
         }

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sailenv_content.generation.asset_index import AssetIndex
-from sailenv_content.generation.items import Item, block_of, clear_blocks
+from sailenv_content.generation.items import Item, Lamp, block_of, clear_blocks
 from sailenv_content.generation.plan import Area, Block, WallGap, WallSide
 from sailenv_ros.assets.arranging import RESTING_GAP_M, WALL_GAP_M
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
@@ -23,6 +23,7 @@ __all__ = ["Positioner", "offset"]
 
 FROM_WINDOW_M = 0.05
 BESIDE_CURTAIN_M = 0.16
+BELOW_CEILING_M = 0.01
 
 _CURTAIN_OUT_M, _CURTAIN_IN_M = 0.30, 0.12
 
@@ -87,6 +88,8 @@ class Positioner:
             reach = float(np.hypot(*np.maximum(-low[:2], high[:2])))
             extent = (along - reach, along + reach)
         found = _beside_holes(side, extent, (height + low[2], height + high[2]), rule)
+        if height + high[2] > self.area.height - BELOW_CEILING_M:
+            return None
         if found is None or extent[0] < 0.005 or extent[1] > side.length_m - 0.005:
             return None
         gap = max(gap, found)
@@ -126,7 +129,8 @@ class Positioner:
     ) -> Item:
         """Return a piece that stands free."""
         x, y, yaw = round(x, 2), round(y, 2), _angle(yaw)
-        z = 0.0 if rule.flat else RESTING_GAP_M
+        low_z = float(self.stock.bounds(asset, scale)[0, 2])
+        z = 0.0 if rule.flat else round(RESTING_GAP_M - low_z, 4)
         entry: dict[str, object] = {"position": [x, y, z], "rotation": [0, 0, yaw]}
         block = block_of(self.stock, asset, scale, x, y, yaw)
         return self._item(rule, asset, scale, entry, block, (x, y, yaw))
@@ -154,8 +158,8 @@ class Positioner:
         entry |= {"static": True} if rule.static else {}
         light = None
         if rule.light is not None:
-            tall = float(self.stock.bounds(asset, scale)[1, 2])
-            light = (rule.light_at * tall, round(self.dice.between(rule.light), 2))
+            at = self.stock.light_m(asset, scale, up=rule.shines == "up")
+            light = Lamp(at, round(self.dice.between(rule.light), 2))
         x, y, yaw = pose
         return Item(
             name="",

@@ -11,7 +11,8 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from sailenv_content.generation.asset_index import AssetIndex
-from sailenv_content.generation.items import Item, Namer, block_of
+from sailenv_content.generation.items import Item, Lamp, Namer, block_of
+from sailenv_content.generation.pieces import PieceChooser
 from sailenv_content.generation.plan import Block
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.authoring.room_rules.rule_files import Rules
@@ -30,6 +31,7 @@ def lay_things(
     items: Sequence[Item], rules: Rules, stock: AssetIndex, dice: RandomStream, namer: Namer
 ) -> Iterator[Item]:
     """Yield what lies on furniture."""
+    pieces = PieceChooser(dice)
     for item in items:
         if item.rule is None:
             continue
@@ -41,7 +43,8 @@ def lay_things(
                 for index, thing in enumerate(rules.things[item.rule.setting]):
                     if not dice.chance(thing.chance):
                         continue
-                    asset = kinds.setdefault(index, dice.one(thing.put))
+                    asset = kinds.get(index) or pieces.chosen(dice.one(thing.put))
+                    kinds[index] = asset
                     laid = _laid_before(item, guest, thing, asset, stock, dice)
                     yield from _kept(laid, item, taken, stock, namer, prefix)
         if item.rule.holds is not None:
@@ -49,8 +52,8 @@ def lay_things(
                 if not dice.chance(thing.chance):
                     continue
                 for _ in range(dice.whole(thing.count)):
+                    asset = pieces.chosen(dice.one(thing.put))
                     for _ in range(TRIES):
-                        asset = dice.one(thing.put)
                         laid = _laid(item, thing, asset, stock, dice)
                         found = list(_kept(laid, item, taken, stock, namer, prefix))
                         if found:
@@ -121,8 +124,7 @@ def _thing(
     c, s = math.cos(yaw), math.sin(yaw)
     light = None
     if thing.light is not None:
-        tall = float(stock.bounds(asset, scale)[1, 2])
-        light = (tall + 0.04, round(dice.between(thing.light), 2))
+        light = Lamp(stock.light_m(asset, scale, up=True), round(dice.between(thing.light), 2))
     return Item(
         name="",
         asset=asset,

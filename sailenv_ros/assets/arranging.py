@@ -23,6 +23,7 @@ from sailenv_ros.types.model import (
     SphereShape,
     TriangleShape,
 )
+from sailenv_ros.types.shapes import box_corners
 
 __all__ = ["RESTING_GAP_M", "WALL_GAP_M", "arranged", "shape_points"]
 
@@ -33,6 +34,11 @@ WALL_GAP_M = 0.004
 
 _SAMPLES = np.linspace(-0.45, 0.45, 9)
 """Points below an object at which the height of its carrier is sampled, as shares of its size."""
+
+_UNTURNED = (0.0, 0.0, 0.0, 1.0)
+
+_EDGE_M = 1e-9
+"""By how much a point may be beside a box that it counts as being over [m]."""
 
 Floats = NDArray[np.float64]
 
@@ -163,8 +169,7 @@ def shape_points(shapes: Sequence[CollisionShape]) -> Floats:
 def _corners(shape: CollisionShape) -> Floats:
     """Return points whose convex hull is a shape, or nearly so for round ones; triangles' own."""
     if isinstance(shape, BoxShape):
-        signs = np.stack(np.meshgrid((-1, 1), (-1, 1), (-1, 1)), axis=-1).reshape(-1, 3)
-        return _moved(signs * np.asarray(shape.half_extents_m), shape.centre_m)
+        return box_corners(shape)
     if isinstance(shape, SphereShape):
         signs = np.concatenate([np.eye(3), -np.eye(3)])
         return _moved(signs * shape.radius_m, shape.centre_m)
@@ -186,6 +191,12 @@ def _height(shape: CollisionShape, scale: tuple[float, float, float], under: Flo
     from scipy.spatial import ConvexHull
 
     points = _corners(shape) * np.asarray(scale)
+    low, high = points.min(axis=0), points.max(axis=0)
+    if isinstance(shape, BoxShape) and shape.orientation_xyzw == _UNTURNED:
+        within = (under >= low[:2] - _EDGE_M) & (under <= high[:2] + _EDGE_M)
+        return float(high[2]) if within.all(axis=1).any() else float("-inf")
+    if (under.max(axis=0) < low[:2]).any() or (under.min(axis=0) > high[:2]).any():
+        return float("-inf")
     if isinstance(shape, TriangleShape):
         triangles = shape.triangles
     else:

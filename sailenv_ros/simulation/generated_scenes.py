@@ -10,7 +10,7 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sailenv_content import generation
+from sailenv_content import families, generation
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.folders import standard_pack_folder
 from sailenv_ros.assets.pack import PACK_FILE
@@ -77,8 +77,9 @@ def generation_state() -> str:
     digest = blake2b(digest_size=8)
     rules = resource_path("config", "rooms")
     files = [*sorted(rules.rglob("*.yaml")), standard_pack_folder() / PACK_FILE]
-    for folder in (Path(names.__file__).parent, Path(generation.__path__[0])):
-        files += sorted(folder.glob("*.py"))
+    for package in (names.__file__, generation.__file__, families.__file__):
+        assert package is not None
+        files += sorted(Path(package).parent.rglob("*.py"))
     for file in files:
         if file.is_file():
             digest.update(file.read_bytes())

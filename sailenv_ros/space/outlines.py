@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import (
     BoxShape,
     CollisionShape,
@@ -21,6 +20,7 @@ from sailenv_ros.types.model import (
     SphereShape,
     TriangleShape,
 )
+from sailenv_ros.types.shapes import box_corners
 
 __all__ = ["Solid", "outlines_between", "solids_of"]
 
@@ -31,7 +31,6 @@ SIDES = 64
 
 _TURNS = 2.0 * np.pi * np.arange(SIDES) / SIDES
 _CIRCLE = np.stack([np.cos(_TURNS), np.sin(_TURNS)], axis=-1) / np.cos(np.pi / SIDES)
-_CORNERS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
 class Solid:
@@ -112,9 +111,7 @@ def _points_of(shape: BoxShape | CylinderShape | ConvexShape) -> Doubles:
         ring = np.column_stack([shape.radius_m * _CIRCLE, np.zeros(SIDES)])
         half = np.array([0.0, 0.0, 0.5 * shape.height_m])
         return np.asarray(np.concatenate([ring - half, ring + half]) + shape.centre_m)
-    corners = _CORNERS * np.asarray(shape.half_extents_m)
-    turn = Pose(orientation_xyzw=shape.orientation_xyzw).matrix()[:3, :3]
-    return np.asarray(corners @ turn.T + np.asarray(shape.centre_m))
+    return box_corners(shape)
 
 
 def _moved(points: Doubles, scale: Sequence[float], matrix: Doubles) -> Doubles:

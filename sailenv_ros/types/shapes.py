@@ -8,6 +8,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.types.geometry import Pose
+
 __all__ = [
     "BoxShape",
     "CollisionShape",
@@ -15,6 +17,7 @@ __all__ = [
     "CylinderShape",
     "SphereShape",
     "TriangleShape",
+    "box_corners",
 ]
 
 
@@ -64,6 +67,16 @@ class TriangleShape:
 
     positions: NDArray[np.float64]
     triangles: NDArray[np.int32]
+
+
+_SIGNS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+
+
+def box_corners(shape: BoxShape) -> NDArray[np.float64]:
+    """Return (8, 3) float64: the corners of a box in the body frame [m]."""
+    turn = Pose(orientation_xyzw=shape.orientation_xyzw).matrix()[:3, :3]
+    corners = _SIGNS * np.asarray(shape.half_extents_m)
+    return np.asarray(corners @ turn.T + np.asarray(shape.centre_m))
 
 
 CollisionShape: TypeAlias = BoxShape | SphereShape | CylinderShape | ConvexShape | TriangleShape

@@ -14,12 +14,17 @@ from sailenv_ros.scene.spec import JointSpec, ObjectSpec
 from sailenv_ros.scene.spec_materials import ALL_PARTS
 from sailenv_ros.types.model import Asset, MovingPart
 
-__all__ = ["as_placed", "moving_entries", "opens"]
+__all__ = ["as_placed", "moving_entries", "moving_name", "opens"]
 
 MAX_NAME = 63
 """Most characters of an object's name."""
 
 _LOOKS = ("scale", "colour", "metallic", "roughness")
+
+
+def moving_name(piece: str, part: str) -> str:
+    """Return the name of the object that is a door or drawer of a piece."""
+    return f"{piece} {part}"
 
 
 def opens(entry: ObjectSpec, asset: Asset, visitors: Collection[str] = ()) -> bool:
@@ -73,7 +78,7 @@ def moving_entries(
 
 
 def _entry(piece: ObjectSpec, part: MovingPart) -> ObjectSpec:
-    name = f"{piece.name} {part.name}"
+    name = moving_name(piece.name, part.name)
     if len(name) > MAX_NAME:
         raise InvalidRequest(
             f"name of {part.name!r} of {piece.name!r}", name, f"at most {MAX_NAME} characters"

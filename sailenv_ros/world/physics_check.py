@@ -109,10 +109,16 @@ def _on_track(world: World, mover: Mover, probe: int, radius_m: float) -> Iterat
         return
     seen: set[str] = set()
     bodies = [body for body in world.bodies if body.collides and not body.behaviours]
+    boxes = np.reshape(
+        [world.client.getAABB(body.bullet_id, body.link) for body in bodies], (-1, 2, 3)
+    )
     for time_s in np.arange(0.0, mover.track.total_time_s, TRACK_STEP_S):
         position = mover.track.pose_at(float(time_s)).position_m
         world.client.resetBasePositionAndOrientation(probe, position, (0.0, 0.0, 0.0, 1.0))
-        for body in bodies:
+        # No shape is nearer than the box around it.
+        apart = np.maximum(boxes[:, 0] - position, position - boxes[:, 1])
+        for place in np.flatnonzero((apart < radius_m).all(axis=-1)):
+            body = bodies[place]
             name = body.placement.name
             distance = _distance(world, body, probe, radius_m) if name not in seen else radius_m
             if distance < radius_m:

@@ -115,12 +115,12 @@ def _lounge(b: PieceBuilder, v: Values) -> None:
         if v.bent:
             line = curve(
                 [
-                    (d / 2, y, 0.02),
+                    (d / 2, y, 0.0),
                     (d / 2 - 0.03, y, h * 0.6),
                     (d / 2 - 0.12, y, v.arm_height),
                     (0.0, y, v.arm_height + 0.015),
                     (-d / 2 + 0.05, y, v.arm_height - 0.05),
-                    (-d / 2, y, 0.02),
+                    (-d / 2, y, 0.0),
                 ],
                 30,
             )

@@ -5,7 +5,7 @@ Reads ``config/rooms``; errors have file, line and column, all at once, as those
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -33,10 +33,13 @@ from sailenv_ros.scene.messages import suggestion
 from sailenv_ros.scene.scene_diagnostics import Diagnostic, model_diagnostics
 from sailenv_ros.system.resources import resource_path
 
-__all__ = ["Rules", "read_rules", "room_kinds", "rules_of"]
+__all__ = ["ANY_SEED", "Rules", "read_rules", "room_kinds", "rules_of"]
 
 LIBRARY = "library"
 SUFFIX = ".yaml"
+
+ANY_SEED = ":*"
+"""End of the name of an asset whose seed is drawn for each room: ``chair~dining:*``."""
 
 M = TypeVar("M", bound=SceneModel)
 
@@ -156,15 +159,27 @@ def _container(names: Iterable[str]) -> Collection[str]:
     return names if isinstance(names, OpenNames) else frozenset(names)
 
 
+def _asset_errors(
+    loc: tuple[Any, ...], names: Sequence[str], known: Collection[str] | None
+) -> Iterator[Diagnostic]:
+    for place, name in enumerate(names if known is not None else ()):
+        # Where one seed makes a piece, all do.
+        asked = f"{name.removesuffix(ANY_SEED)}:0" if name.endswith(ANY_SEED) else name
+        if known is not None and asked not in known:
+            fault = known.fault(asked) if isinstance(known, OpenNames) else ""
+            message = f"is no name of a piece: {fault}"
+            yield Diagnostic((*loc, place), message) if fault else _unknown(
+                "asset", (*loc, place), name, known
+            )
+
+
 def _things_errors(assets: Iterable[str] | None) -> MoreErrors[ThingsFile]:
     known = None if assets is None else _container(assets)
 
     def errors(file: ThingsFile) -> Iterator[Diagnostic]:
         for name, things in file.things.items():
             for index, thing in enumerate(things):
-                for place, asset in enumerate(thing.put if known is not None else ()):
-                    if known is not None and asset not in known:
-                        yield _unknown("asset", ("things", name, index, "put", place), asset, known)
+                yield from _asset_errors(("things", name, index, "put"), thing.put, known)
 
     return errors
 
@@ -185,9 +200,7 @@ def _furniture_errors(
                 if companion.put not in file.furniture:
                     place = (*loc, "companions", index, "put")
                     yield _unknown("piece", place, companion.put, file.furniture)
-            for index, asset in enumerate(rule.assets if known is not None else ()):
-                if known is not None and asset not in known:
-                    yield _unknown("asset", (*loc, "assets", index), asset, known)
+            yield from _asset_errors((*loc, "assets"), rule.assets, known)
         yield from _rings(file.furniture)
 
     return errors

@@ -99,7 +99,12 @@ class CompanionRule(_RuleModel):
 class FurnitureRule(_RuleModel):
     """A piece of furniture by its function."""
 
-    assets: tuple[str, ...] = Field(min_length=1, description="names of the catalogue")
+    assets: tuple[str, ...] = Field(
+        min_length=1, description="names of the catalogue; `chair~dining:*` is of any seed"
+    )
+    alike: Fraction = Field(
+        default=0.0, description="that another one in the room is the same, if a seed made it"
+    )
     at: Annotated[Place, Choice(get_args(Place))] = Field(
         default="wall", description="where it stands or hangs"
     )
@@ -119,13 +124,17 @@ class FurnitureRule(_RuleModel):
     holds: _Name | None = optional("name of a list in things.yaml")
     setting: _Name | None = optional("list in things.yaml that is laid before each chair around it")
     light: Strength | None = optional("radiant intensity of a lamp that is on [W/sr]")
-    light_at: Fraction = Field(default=0.9, description="share of its height at which it shines")
+    shines: Annotated[Literal["up", "down"], Choice(("up", "down"))] = Field(
+        default="up", description="whether the lamp's light is above or below what glows of it"
+    )
 
 
 class ThingRule(_RuleModel):
     """An object that lies or stands on a piece of furniture."""
 
-    put: tuple[str, ...] = Field(min_length=1, description="names of the catalogue, one is taken")
+    put: tuple[str, ...] = Field(
+        min_length=1, description="names of the catalogue, one is taken; `cup~mug:*` is of any seed"
+    )
     count: Count = Field(default=(1, 1), description="how many")
     chance: Fraction = Field(default=1.0, description="that there are any")
     x: Shares = Field(default=(-1.0, 1.0), description="from the back, -1, to the front, 1")

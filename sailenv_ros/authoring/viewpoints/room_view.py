@@ -14,6 +14,7 @@ from pydantic import Field
 from sailenv_ros.authoring.viewpoints.free_view import FreeView, poses_in_free_space
 from sailenv_ros.authoring.viewpoints.view_scene import CameraView, ViewScene, camera_rule
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import PART_MARK
 
 __all__ = ["ViewScore", "RoomView", "view_score", "room_view"]
 
@@ -50,7 +51,8 @@ class ViewScore:
     ----------
     pose : Pose
     shares : mapping of int to float
-        Of the picture, by the ids of objects; parts count as what they belong to.
+        Of the picture, by the ids of objects. Parts count as what they belong to, but for what
+        opens: a row of cupboards is worth looking at.
     depth_m : float
         Median of the picture's depth [m].
     nearest_m : float
@@ -91,13 +93,14 @@ def view_score(scene: ViewScene, pose: Pose) -> ViewScore:
     """Return what is seen from a pose."""
     # NaN is nearer than the near plane.
     depth = np.nan_to_num(scene.depth_m(pose).astype(np.float64), nan=0.0, posinf=1e4)
-    ids, pixels = np.unique(scene.instances(pose), return_counts=True)
-    wholes = {d.instance.id: d.instance.parent for d in scene.snapshot.contents.instances}
+    wholes = {
+        drawn.instance.id: drawn.instance.parent
+        for drawn in scene.snapshot.contents.instances
+        if PART_MARK in drawn.instance.name
+    }
     counts: Counter[int] = Counter()
-    for id_, count in zip(ids.tolist(), pixels.tolist(), strict=True):
-        whole = wholes.get(id_) or id_
-        if whole in scene.object_ids:
-            counts[whole] += count
+    for id_, count in scene.seen(pose, 0.0).items():
+        counts[wholes.get(id_, id_)] += count
     return ViewScore(
         pose=pose,
         shares={id_: count / depth.size for id_, count in counts.items()},

@@ -94,8 +94,11 @@ class ViewScene(ABC):
     def object_ids(self) -> frozenset[int]:
         """Ids of what stands in the scene: not of floors, walls and other parts of rooms."""
         parts = {"floor", "wall", "ceiling", "skirting", "window", "door", "curtain", "outside"}
-        found = (drawn.instance for drawn in self.snapshot.contents.instances)
-        return frozenset(i.id for i in found if i.category not in parts)
+        found = {d.instance.id: d.instance for d in self.snapshot.contents.instances}
+        # The door of a cupboard is no door of a room.
+        return frozenset(
+            i.id for i in found.values() if found.get(i.parent, i).category not in parts
+        )
 
     def seen(self, pose: Pose, cover: float) -> Mapping[int, int]:
         """Return the pixels of each object that covers at least that share of the picture."""

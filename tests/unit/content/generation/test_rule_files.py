@@ -57,6 +57,8 @@ def test_the_packages_own_rules_are_well() -> None:
         ("bedroom.yaml", "[warm, ", "[worm, ", "there is no set of materials 'worm'"),
         ("library/furniture.yaml", "[bed_01, ", "[bed_91, ", "there is no asset 'bed_91'"),
         ("library/furniture.yaml", "holds: bed", "holds: bad", "there is no list of things 'bad'"),
+        ("library/furniture.yaml", "bed~slatted:*", "bed~slated:*", "did you mean 'slatted'?"),
+        ("library/things.yaml", "cup~tumbler:*", "cpu~tumbler:*", "did you mean 'cup'?"),
         ("library/things.yaml", "pillow_02, ", "pilow_02, ", "there is no asset 'pilow_02'"),
         ("library/materials.yaml", "oak_parquet]", "oak_parket]", "there is no material"),
         ("library/light.yaml", "sunrise,", "sunrize,", "there is no sky 'sunrize'"),
