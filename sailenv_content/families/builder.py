@@ -167,7 +167,11 @@ class PieceBuilder:
     def set_down(self) -> None:
         """Move all so that the lowest point that is drawn is at z = 0: legs are cut off aslant."""
         low = min(
-            (float(mesh.positions[:, 2].min()) for one in self.components for _, mesh in one.meshes),
+            (
+                float(mesh.positions[:, 2].min())
+                for one in self.components
+                for _, mesh in one.meshes
+            ),
             default=0.0,
         )
         by = np.array([0.0, 0.0, -low])
@@ -180,9 +184,7 @@ class PieceBuilder:
             if one.joint is not None:
                 x, y, z = (np.asarray(one.joint.origin_m) + by).tolist()
                 one.joint = replace(one.joint, origin_m=(x, y, z))
-        self.keypoints = {
-            name: (x, y, z - low) for name, (x, y, z) in self.keypoints.items()
-        }
+        self.keypoints = {name: (x, y, z - low) for name, (x, y, z) in self.keypoints.items()}
 
     # -- parts -----------------------------------------------------------------------------
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.assets.arranging import shape_points
+from sailenv_ros.assets.arranging import shape_points, support_heights
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.types.model import Asset
 
@@ -65,6 +65,10 @@ class AssetIndex:
         low, high = self._glow(name) * scale
         x, y = ((low + high) / 2.0)[:2].tolist()
         return x, y, float(high[2] + LIGHT_GAP_M if up else low[2] - LIGHT_GAP_M)
+
+    def support_heights(self, name: str, scale: float, under: Floats) -> Floats:
+        """Return the heights at which an object would carry something; see `arranging`."""
+        return support_heights(self.asset(name), (scale,) * 3, under)
 
     def _measure_glow(self, name: str) -> Floats:
         parts = [part for part in self.asset(name).model.parts if any(part.material.glow)]

@@ -130,9 +130,7 @@ class Furnisher:
         )
         self.items.extend(group.items)
 
-    def _proposed(
-        self, name: str, rule: FurnitureRule, asset: str, group: _Group
-    ) -> Item | None:
+    def _proposed(self, name: str, rule: FurnitureRule, asset: str, group: _Group) -> Item | None:
         """Draw a place for a piece; None if it cannot stand there."""
         scale = round(self.dice.between(rule.scale), 2)
         if rule.at in ("wall", "corner") or rule.height is not None:

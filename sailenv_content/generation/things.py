@@ -26,6 +26,9 @@ EDGE_M = 0.012
 
 APART_M = 0.012
 
+MOST = 0.7
+"""Share of its size by which it has to be over its carrier."""
+
 
 def lay_things(
     items: Sequence[Item], rules: Rules, stock: AssetIndex, dice: RandomStream, namer: Namer
@@ -46,7 +49,7 @@ def lay_things(
                     asset = kinds.get(index) or pieces.chosen(dice.one(thing.put))
                     kinds[index] = asset
                     laid = _laid_before(item, guest, thing, asset, stock, dice)
-                    yield from _kept(laid, item, taken, stock, namer, prefix)
+                    yield from _kept(laid, item, taken, stock, namer, prefix, thing.highest)
         if item.rule.holds is not None:
             for thing in rules.things[item.rule.holds]:
                 if not dice.chance(thing.chance):
@@ -55,7 +58,7 @@ def lay_things(
                     asset = pieces.chosen(dice.one(thing.put))
                     for _ in range(TRIES):
                         laid = _laid(item, thing, asset, stock, dice)
-                        found = list(_kept(laid, item, taken, stock, namer, prefix))
+                        found = list(_kept(laid, item, taken, stock, namer, prefix, thing.highest))
                         if found:
                             yield from found
                             break
@@ -140,15 +143,30 @@ def _thing(
 
 
 def _kept(
-    laid: Item, item: Item, taken: list[Block], stock: AssetIndex, namer: Namer, prefix: str
+    laid: Item,
+    item: Item,
+    taken: list[Block],
+    stock: AssetIndex,
+    namer: Namer,
+    prefix: str,
+    highest_m: float | None,
 ) -> Iterable[Item]:
-    """Yield a thing if it lies within its carrier and touches no other."""
+    """Yield a thing if it lies within its carrier, no higher than it may, and touches no other."""
     low, high = stock.bounds(item.asset, item.scale)
     middle, half = (low + high) / 2.0, (high - low) / 2.0
     offsets = np.abs(laid.block.corners() - middle[:2])
     if (offsets > half[:2] - EDGE_M + 1e-6).any():
         return
     if any(laid.block.meets(other, APART_M) for other in taken):
+        return
+    # Tops are round or have a basin in them: it lies where most of it is over something.
+    centre = np.array([laid.block.x, laid.block.y])
+    corners = laid.block.corners() - centre
+    spots = centre + np.vstack([np.zeros(2), MOST * corners, corners])
+    heights = stock.support_heights(item.asset, item.scale, spots)
+    if not np.isfinite(heights[:5]).all():
+        return
+    if highest_m is not None and heights.max() > highest_m:
         return
     taken.append(laid.block)
     category = stock.asset(laid.asset).category

@@ -7,6 +7,7 @@ is found from the collision shapes of both, so that it rests there from the firs
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ from sailenv_ros.types.model import (
 )
 from sailenv_ros.types.shapes import box_corners
 
-__all__ = ["RESTING_GAP_M", "WALL_GAP_M", "arranged", "shape_points"]
+__all__ = ["RESTING_GAP_M", "WALL_GAP_M", "arranged", "shape_points", "support_heights"]
 
 RESTING_GAP_M = 0.001
 """Gap between an object and its carrier [m]: shapes in contact would be pushed apart."""
@@ -113,16 +114,32 @@ def _upon(
     middle, size = (low + high) / 2.0, high - low
     offsets = np.stack(np.meshgrid(_SAMPLES, _SAMPLES), axis=-1).reshape(-1, 2)
     under = np.array([x, y]) + middle[:2] + offsets * size[:2]
-    height = max(
-        (_height(shape, carrier.scale, under) for shape in carrying.collision or _box_of(carrying)),
-        default=0.0,
-    )
+    height = float(support_heights(carrying, carrier.scale, under).max())
     if not np.isfinite(height):
         raise InvalidRequest(
             f"position of {entry.name!r}", entry.position, f"a place that {entry.on!r} lies under"
         )
     given[:3, 3] = (x, y, z + height - low[2] + RESTING_GAP_M)
     return Pose.from_matrix(base.matrix() @ given)
+
+
+def support_heights(asset: Asset, scale: tuple[float, float, float], under: Floats) -> Floats:
+    """Return the heights at which an asset would carry something.
+
+    Parameters
+    ----------
+    asset : Asset
+    scale : (3,) tuple of float
+    under : (N, 2) float64
+        Points below, in the body frame [m].
+
+    Returns
+    -------
+    (N,) float64
+        In the body frame [m]; -inf where nothing of it is above.
+    """
+    shapes = asset.collision or _box_of(asset)
+    return np.asarray(np.max([_heights(shape, scale, under) for shape in shapes], axis=0))
 
 
 def _beside_wall(entry: ObjectSpec, asset: Asset, room: RoomSpec) -> Pose:
@@ -186,21 +203,21 @@ def _moved(points: Floats, centre_m: tuple[float, float, float]) -> Floats:
     return np.asarray(points + np.asarray(centre_m))
 
 
-def _height(shape: CollisionShape, scale: tuple[float, float, float], under: Floats) -> float:
-    """Return the greatest height of a shape over points of the floor; -inf where there is none."""
-    from scipy.spatial import ConvexHull
-
-    points = _corners(shape) * np.asarray(scale)
+def _heights(shape: CollisionShape, scale: tuple[float, float, float], under: Floats) -> Floats:
+    """Return (N,): the greatest heights of a shape over points of the floor; -inf beside it."""
+    points, triangles = _triangles_of(shape)
+    points = points * np.asarray(scale)
+    heights = np.full(len(under), -np.inf)
     low, high = points.min(axis=0), points.max(axis=0)
+    near = ((under >= low[:2] - _EDGE_M) & (under <= high[:2] + _EDGE_M)).all(axis=1)
     if isinstance(shape, BoxShape) and shape.orientation_xyzw == _UNTURNED:
-        within = (under >= low[:2] - _EDGE_M) & (under <= high[:2] + _EDGE_M)
-        return float(high[2]) if within.all(axis=1).any() else float("-inf")
-    if (under.max(axis=0) < low[:2]).any() or (under.min(axis=0) > high[:2]).any():
-        return float("-inf")
-    if isinstance(shape, TriangleShape):
-        triangles = shape.triangles
-    else:
-        triangles = ConvexHull(points).simplices
+        heights[near] = high[2]
+    elif near.any():
+        heights[near] = _over_triangles(points, triangles, under[near])
+    return heights
+
+
+def _over_triangles(points: Floats, triangles: NDArray[np.int32], under: Floats) -> Floats:
     a, b, c = (points[triangles[:, k]] for k in range(3))
     ab, ac = (b - a)[:, :2], (c - a)[:, :2]
     area = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
@@ -211,4 +228,14 @@ def _height(shape: CollisionShape, scale: tuple[float, float, float], under: Flo
     w = (ab[:, 0] * offset[..., 1] - ab[:, 1] * offset[..., 0]) / area
     inside = (v >= -1e-9) & (w >= -1e-9) & (v + w <= 1.0 + 1e-9)
     heights = a[:, 2] + v * (b - a)[:, 2] + w * (c - a)[:, 2]
-    return float(heights[inside].max()) if inside.any() else float("-inf")
+    return np.asarray(np.where(inside, heights, -np.inf).max(axis=1, initial=-np.inf))
+
+
+@lru_cache(maxsize=4096)
+def _triangles_of(shape: CollisionShape) -> tuple[Floats, NDArray[np.int32]]:
+    from scipy.spatial import ConvexHull
+
+    points = _corners(shape)
+    if isinstance(shape, TriangleShape):
+        return points, shape.triangles
+    return points, np.asarray(ConvexHull(points).simplices, np.int32)

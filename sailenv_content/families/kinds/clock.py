@@ -41,7 +41,7 @@ def _dial(b: PieceBuilder, v: Values, x: float, z: float, r: float) -> None:
             at=(off, 0, z),
             axis=(-1, 0, 0),
             opens_deg=360.0,
-            friction=0.002,
+            friction=0.01,  # a hand of 5 g must not fall
             damping=0.001,
         ):
             at = (off, 0.4 * long * np.sin(a), z + 0.4 * long * np.cos(a))

@@ -168,8 +168,10 @@ def _asset_errors(
         if known is not None and asked not in known:
             fault = known.fault(asked) if isinstance(known, OpenNames) else ""
             message = f"is no name of a piece: {fault}"
-            yield Diagnostic((*loc, place), message) if fault else _unknown(
-                "asset", (*loc, place), name, known
+            yield (
+                Diagnostic((*loc, place), message)
+                if fault
+                else _unknown("asset", (*loc, place), name, known)
             )
 
 

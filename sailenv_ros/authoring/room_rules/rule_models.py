@@ -142,6 +142,7 @@ class ThingRule(_RuleModel):
     turn: Turn = Field(default=(-180.0, 180.0), description="against the piece [deg]")
     scale: Factor = Field(default=(1.0, 1.0), description="of its size")
     static: Annotated[bool, Switch()] = Field(default=False, description="true: never moves")
+    highest: _Length | None = optional("where it may lie, above the piece's base [m]")
     inset: _Length = Field(default=0.0, description="in a setting: from the table's edge [m]")
     aside: _Length = Field(default=0.0, description="in a setting: to the right of the guest [m]")
     light: Strength | None = optional("of a lamp that is on [W/sr]")

@@ -265,4 +265,5 @@ def test_a_bathroom_has_one_place_to_wash(generator: Generator, seed: int) -> No
     """A vanity has a basin in it: with one there is no other."""
     entries = yaml.safe_load(generator.generate("bathroom", seed).text)["objects"]
     names = [entry["name"] for entry in entries]
-    assert sum(name.startswith(("vanity", "washbasin", "hanging vanity", "hanging washbasin")) for name in names) == 1
+    basins = ("vanity", "washbasin", "hanging vanity", "hanging washbasin")
+    assert sum(name in basins for name in names) == 1
