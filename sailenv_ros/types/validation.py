@@ -217,12 +217,13 @@ def vector(what: str, values: ArrayLike, *, limit: float = math.inf) -> tuple[fl
     InvalidRequest
         If there are not three, or one is not finite or beyond the limit.
     """
-    within = f" within ±{shown_number(limit)}" if math.isfinite(limit) else ""
-    accepted = f"three finite numbers{within}"
     try:
         array = np.asarray(values, dtype=np.float64)
     except (OverflowError, TypeError, ValueError):
-        raise InvalidRequest(what, values, accepted) from None
-    if array.shape != (3,) or not np.isfinite(array).all() or bool((np.abs(array) > limit).any()):
-        raise InvalidRequest(what, values, accepted)
-    return float(array[0]), float(array[1]), float(array[2])
+        array = np.empty(0)
+    if array.shape == (3,):
+        x, y, z = array.tolist()
+        if all(math.isfinite(part) and abs(part) <= limit for part in (x, y, z)):
+            return x, y, z
+    within = f" within ±{shown_number(limit)}" if math.isfinite(limit) else ""
+    raise InvalidRequest(what, values, f"three finite numbers{within}") from None

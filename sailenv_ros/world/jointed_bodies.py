@@ -20,7 +20,7 @@ from sailenv_ros.world import actuation
 from sailenv_ros.world.bodies import NOT_THERE, Body, FrustumPlanes, Vector3
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.joint_tree import JointLink, JointTree
-from sailenv_ros.world.kinematics import Twist, composed, link_pose, link_velocity
+from sailenv_ros.world.kinematics import Twist, composed, cross, link_pose, link_velocity
 from sailenv_ros.world.placement import JointPlacement, Placement
 
 __all__ = ["JointedBody", "make_bodies", "make_body"]
@@ -29,6 +29,8 @@ LONGEST_S = 1e4
 """Longest time that a motion to a position may take [s]."""
 
 _STILL: Twist = (np.zeros(3), np.zeros(3))
+for _zeros in _STILL:
+    _zeros.flags.writeable = False
 
 
 def make_body(client: BulletClient, placement: Placement) -> Body:
@@ -67,6 +69,9 @@ class JointedBody(Body):
         self._number = 0
         self._at = (placement.joint.spec.start, placement.joint.spec.velocity)
         self._motion: RunningBehaviour | None = None
+        # Most joints rest, and what follows from the same numbers is the same.
+        self._resting: tuple[Pose, Pose] | None = None
+        self._posed: tuple[Pose, float, Pose, NDArray[np.float64]] | None = None
         super().__init__(client, placement)
 
     # -- where it is -----------------------------------------------------------------------
@@ -86,6 +91,7 @@ class JointedBody(Body):
     def hang(self, tree: JointTree, number: int, parent: Body | None) -> None:
         """Become a link of a tree; `parent` carries it, None is the world."""
         self.tree, self._number, self.parent = tree, number, parent
+        self._resting = self._posed = None
         self._id = tree.bullet_id
         self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, number)[2])
 
@@ -102,34 +108,45 @@ class JointedBody(Body):
         """Return where it is while its joint's position is 0, and those above stay."""
         if self.parent is None:
             return self.joint.parent_from_rest
-        return composed(self.parent.pose(), self.joint.parent_from_rest)
+        carrier = self.parent.pose()
+        if self._resting is None or self._resting[0] is not carrier:
+            self._resting = carrier, composed(carrier, self.joint.parent_from_rest)
+        return self._resting[1]
 
     def pose(self) -> Pose:
         """Return the pose of the body frame now."""
-        pose = link_pose(self.rest_pose(), self.joint, self.joint_state()[0])
-        self._quat = pose.orientation_xyzw
-        return pose
+        return self._pose_now()[0]
 
     def world_from_body(self) -> NDArray[np.float64]:
-        """Return the (4, 4) pose now."""
-        return self.pose().matrix()
+        """Return the (4, 4) pose now; read-only."""
+        return self._pose_now()[1]
+
+    def _pose_now(self) -> tuple[Pose, NDArray[np.float64]]:
+        rest, position = self.rest_pose(), self.joint_state()[0]
+        posed = self._posed
+        if posed is None or posed[0] is not rest or posed[1] != position:
+            pose = link_pose(rest, self.joint, position)
+            matrix = pose.matrix()
+            matrix.flags.writeable = False
+            self._posed = posed = rest, position, pose, matrix
+            self._quat = pose.orientation_xyzw
+        return posed[2], posed[3]
 
     def twist(self) -> Twist:
         """Return the velocity of its frame's origin [m/s] and the angular one [rad/s]."""
-        if self.parent is None:
-            carrier, carried = np.eye(4), _STILL
-        else:
-            carrier = self.parent.world_from_body()
-            moves = isinstance(self.parent, JointedBody)
-            carried = self.parent.twist() if moves else _STILL  # type: ignore[attr-defined]  # see moves
+        parent, rate = self.parent, self.joint_state()[1]
+        carried = parent.twist() if isinstance(parent, JointedBody) else _STILL
+        if not rate and carried is _STILL:
+            return _STILL
+        carrier = np.eye(4) if parent is None else parent.world_from_body()
         rest, now = self.rest_pose().matrix(), self.world_from_body()
-        return link_velocity(carrier, carried, rest, now, self.joint, self.joint_state()[1])
+        return link_velocity(carrier, carried, rest, now, self.joint, rate)
 
     def velocity(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the velocity of the centre of mass [m/s] and the angular velocity [rad/s]."""
         linear, angular = self.twist()
         arm = self.world_from_body()[:3, :3] @ np.asarray(self._centre)
-        return linear + np.cross(angular, arm), angular
+        return linear + cross(angular, arm), angular
 
     def origin_velocity(self, world_from_body: NDArray[np.float64]) -> tuple[Vector3, Vector3]:
         """Return the velocity of the body frame's origin [m/s] and the angular one [rad/s]."""
@@ -238,10 +255,10 @@ class JointedBody(Body):
         if action.acts:
             self.tree.wake()
         rate = action.joint_velocity
-        axis = self.rest_pose().matrix()[:3, :3] @ np.asarray(self.joint.spec.unit_axis)
         slides = self.joint.spec.type == "slide"
         asked = action.linear_velocity if slides else action.angular_velocity
         if rate is None and asked is not None:
+            axis = self.rest_pose().matrix()[:3, :3] @ np.asarray(self.joint.spec.unit_axis)
             rate = float(axis @ np.asarray(asked))
         if action.joint_position is not None:
             self.tree.set(self._number, action.joint_position)

@@ -15,11 +15,17 @@ from numpy.typing import NDArray
 from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.world.placement import JointPlacement
 
-__all__ = ["composed", "link_pose", "link_velocity"]
+__all__ = ["composed", "cross", "link_pose", "link_velocity"]
 
 Doubles: TypeAlias = NDArray[np.float64]
 Twist: TypeAlias = tuple[Doubles, Doubles]
 """Velocity of a frame's origin [m/s] and angular velocity [rad/s], world axes."""
+
+
+def cross(a: Doubles, b: Doubles) -> Doubles:
+    """Return the vector product of two vectors (3,): NumPy's takes twenty times as long."""
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def composed(a_from_b: Pose, b_from_c: Pose) -> Pose:
@@ -77,7 +83,7 @@ def link_velocity(
         Of the joint's position [rad/s] or [m/s].
     """
     linear, angular = of_parent
-    linear = linear + np.cross(angular, now[:3, 3] - parent[:3, 3])
+    linear = linear + cross(angular, now[:3, 3] - parent[:3, 3])
     spec = joint.spec
     if not rate or not spec.moves:
         return linear, angular
@@ -85,4 +91,4 @@ def link_velocity(
     if spec.type == "slide":
         return linear + axis * rate, angular
     pivot = rest[:3, :3] @ np.asarray(spec.origin) + rest[:3, 3]
-    return linear + np.cross(axis * rate, now[:3, 3] - pivot), angular + axis * rate
+    return linear + cross(axis * rate, now[:3, 3] - pivot), angular + axis * rate
