@@ -130,6 +130,7 @@ def data_files() -> list[tuple[str, list[str]]]:
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (share, ["package.xml"]),
         (f"{share}/config", sorted(path for kind in CONFIG for path in glob(f"config/*.{kind}"))),
+        (f"{share}/config/courses", sorted(glob("config/courses/*.yaml"))),
         (f"{share}/config/recipes", sorted(glob("config/recipes/*.yaml"))),
         (f"{share}/config/rooms", sorted(glob("config/rooms/*.yaml"))),
         (f"{share}/config/rooms/library", sorted(glob("config/rooms/library/*.yaml"))),

@@ -1,4 +1,4 @@
-"""`sailenv stream`: the published streams of SAILab's work, made from scenes of our own."""
+"""`sailenv stream`: the published streams of SAILab's work, and endless ones."""
 
 from __future__ import annotations
 
@@ -46,16 +46,31 @@ def add_parser(subparsers: Any) -> None:
     colof.add_argument("--which", choices=("a", "b", "c"), required=True, help="which of them")
     colof.add_argument("--frames", type=int, metavar="N", help="default: 90,000")
     _add_common(colof)
+    endless = actions.add_parser(
+        "endless", help="frames of a stream without an end", description=_DESCRIPTION
+    )
+    endless.add_argument(
+        "--course", default="home", metavar="NAME", help="or a file; default: home"
+    )
+    endless.add_argument(
+        "--begin", type=int, default=0, metavar="N", help="first frame; default: 0"
+    )
+    endless.add_argument("--frames", type=int, required=True, metavar="N", help="how many")
+    _add_output(endless)
 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:
+    _add_output(parser)
+    add_light(parser, "plain")
+    parser.add_argument("--backend", choices=("auto", "native", "gl"), default="auto")
+
+
+def _add_output(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="DIR", help="the bag; must not exist"
     )
     parser.add_argument("--seed", type=int, default=0, help="default: %(default)s")
-    parser.add_argument("--views", nargs="+", default=[], metavar="VIEW", help="default: all six")
-    add_light(parser, "plain")
-    parser.add_argument("--backend", choices=("auto", "native", "gl"), default="auto")
+    parser.add_argument("--views", nargs="+", default=[], metavar="VIEW", help="default: its own")
     parser.add_argument("--quiet", action="store_true", help="no progress line")
 
 
@@ -67,6 +82,8 @@ def run(args: argparse.Namespace) -> int:
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         # A shell starts what it puts into the background so; who sends it means it.
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if args.stream == "endless":
+        return _run_endless(args)
     kind = stream_named(f"colof_{args.which}" if args.stream == "colof" else args.stream)
     frames = args.frames
     if frames is None and not kind.laps:
@@ -89,6 +106,23 @@ def run(args: argparse.Namespace) -> int:
     with _progress(frames, quiet=args.quiet) as tell:
         made = make_stream(job, args.output, on_frame=tell)
     print(f"{made}: {frames} frames at {kind.rate_hz:g} Hz")
+    return 0
+
+
+def _run_endless(args: argparse.Namespace) -> int:
+    import sailenv_ros.streams as streams
+    from sailenv_ros.dataset.streams.endless import EndlessJob, make_endless
+
+    job = EndlessJob(
+        course=streams.load_course(args.course),
+        frames=args.frames,
+        begin=args.begin,
+        seed=args.seed,
+        views=tuple(args.views) or streams.VIEWS,
+    )
+    with _progress(job.frames, quiet=args.quiet) as tell:
+        made = make_endless(job, args.output, on_frame=tell)
+    print(f"{made}: frames {job.begin} to {job.begin + job.frames - 1} of {job.course.name}")
     return 0
 
 

@@ -7,6 +7,7 @@ from hashlib import blake2b
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 __all__ = ["RandomStream"]
 
@@ -42,6 +43,15 @@ class RandomStream:
         """Return one of several."""
         return choices[int(self._generator.integers(len(choices)))]
 
+    def weighted(self, choices: Sequence[T], weights: Sequence[float]) -> T:
+        """Return one of several, each as often as its weight says."""
+        ends = np.cumsum(weights)
+        return choices[int(np.searchsorted(ends, self._generator.random() * ends[-1], "right"))]
+
     def mixed(self, choices: Sequence[T]) -> list[T]:
         """Return all of several in another order."""
         return [choices[index] for index in self._generator.permutation(len(choices))]
+
+    def places(self, total: int, count: int) -> NDArray[np.int64]:
+        """Return (count,) different places of a list of so many."""
+        return self._generator.choice(total, count, replace=False)

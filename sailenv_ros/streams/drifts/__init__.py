@@ -1,0 +1,1 @@
+"""Kinds of drift, one a file: settings of a course in, a change of a `StreamState` out."""

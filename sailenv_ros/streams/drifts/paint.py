@@ -1,0 +1,48 @@
+"""Walls that are painted anew every so many frames."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from sailenv_ros.authoring.room_rules.random_stream import RandomStream
+from sailenv_ros.scene.field_types import Number
+from sailenv_ros.scene.fields import LinearColour, SceneModel
+from sailenv_ros.streams.state import DriftRecord, StreamState
+from sailenv_ros.types.colour import linear_from_hex
+
+__all__ = ["Paint"]
+
+_Frame = Annotated[int, Number(least=0, most=10**9, whole=True)]
+
+
+PAINTS = tuple(
+    linear_from_hex(colour)
+    for colour in ("#e8e4da", "#b9c4b1", "#c9b8a3", "#9fb3c1", "#d8c2b8", "#8c9a93")
+)
+
+
+class Paint(SceneModel):
+    """The colour of all walls; the rooms' own before the onset."""
+
+    onset: _Frame = Field(default=100_000, description="frame at which they are painted first")
+    every: Annotated[int, Number(least=1, most=10**9, whole=True)] = Field(
+        default=100_000, description="frames from one painting to the next"
+    )
+    colours: tuple[LinearColour, ...] = Field(
+        default=PAINTS,
+        min_length=1,
+        description="one after the other in an order that the seed draws",
+    )
+
+    def apply(self, state: StreamState, frame: int, seed: int) -> DriftRecord:
+        """Choose the colour."""
+        if frame < self.onset:
+            return DriftRecord(values={"colour": ()}, since=self.onset, active=False)
+        time = (frame - self.onset) // self.every
+        order = RandomStream("paint", seed).mixed(self.colours)
+        state.paint = order[time % len(order)]
+        return DriftRecord(
+            values={"colour": state.paint}, since=self.onset + time * self.every, active=True
+        )

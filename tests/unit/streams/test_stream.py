@@ -1,0 +1,179 @@
+"""Streams: any frame by its number has the bytes that it has when all before it were made."""
+
+from __future__ import annotations
+
+import hashlib
+import multiprocessing
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sailenv_ros.streams as streams
+from sailenv_ros.errors import InvalidRequest, SceneError, UnknownName
+from sailenv_ros.streams import Course, Stream, StreamFrame
+from sailenv_ros.streams.plan import HABITS, StreamPlan
+
+ORDER = (29, 3, 4, 17, 16, 5, 98, 12, 12, 0, 30)
+"""Ahead, back, across episodes and rooms, twice the same."""
+
+
+def _bytes(frame: StreamFrame) -> str:
+    digest = hashlib.sha256()
+    for name, view in frame.views.items():
+        digest.update(name.encode() + view.tobytes())
+    return digest.hexdigest()
+
+
+def _digests(stream: Stream) -> dict[int, str]:
+    return {number: _bytes(stream[number]) for number in ORDER}
+
+
+@pytest.fixture(scope="module")
+def in_order(stream: Stream) -> dict[int, str]:
+    return {frame.number: _bytes(frame) for frame in stream}
+
+
+def test_a_frame_by_its_number_is_that_of_the_whole_stream(
+    stream: Stream, in_order: dict[int, str]
+) -> None:
+    for number in ORDER:
+        assert _bytes(stream[number]) == in_order[number], number
+    assert len(set(in_order.values())) > 90  # a camera that stands may see the same twice
+
+
+def test_another_process_makes_the_same(stream: Stream, in_order: dict[int, str]) -> None:
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        found = pool.apply(_digests, (pickle.loads(pickle.dumps(stream)),))
+    assert found == {number: in_order[number] for number in ORDER}
+
+
+def test_a_forked_process_makes_a_simulation_of_its_own(
+    stream: Stream, in_order: dict[int, str]
+) -> None:
+    stream[7]
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        assert pool.apply(_digest_of, (stream, 8)) == in_order[8]
+    assert _bytes(stream[8]) == in_order[8]
+
+
+def _digest_of(stream: Stream, number: int) -> str:
+    return _bytes(stream[number])
+
+
+def test_slices_are_streams(stream: Stream, in_order: dict[int, str]) -> None:
+    part = stream[20:30:3]
+    assert [frame.number for frame in part] == [20, 23, 26, 29]
+    assert _bytes(part[-1]) == in_order[29]
+    assert (len(part), len(part[1:])) == (4, 3)
+    part.close()
+    with pytest.raises(IndexError):
+        stream[100]
+
+
+def test_seeds_make_different_streams(course: Course, in_order: dict[int, str]) -> None:
+    with streams.open(course, seed=6, length=100) as other:
+        assert _bytes(other[29]) != in_order[29]
+
+
+def test_flow_is_that_since_the_frame_before(stream: Stream) -> None:
+    """Depth and poses of two frames, by arithmetic, where the room stands still."""
+    with streams.open(stream.course, seed=5, views=("depth", "flow", "category"), length=60) as one:
+        moving = next(n for n in range(1, 60) if one._plan.place(n).habit == "walk" and n % 6)
+        before, now = one[moving - 1].frame, one[moving].frame
+    walls = now.info.categories.named("wall").id
+    rows, columns = np.nonzero(now.views["category"] == walls)
+    depth = now.views["depth"][rows, columns].astype(np.float64)
+    points = now.camera.intrinsics.rays()[rows, columns] * depth[:, None]
+    move = before.camera.camera_from_world @ now.camera.world_from_camera
+    was = before.camera.intrinsics.project(points @ move[:3, :3].T + move[:3, 3])
+    expected = np.stack([columns, rows], axis=1) - was
+    found = now.views["flow"][rows, columns] * now.dt_ns * 1e-9
+    assert np.abs(expected).max() > 0.3
+    np.testing.assert_allclose(found, expected, atol=1e-3)
+
+
+def test_every_room_is_visited_on_each_tour(course: Course) -> None:
+    plan = StreamPlan(course, 5)
+    visit = course.episode * course.visit
+    for tour in range(4):
+        begin = tour * visit * len(plan.rooms)
+        rooms = {plan.place(begin + visit * number).room for number in range(len(plan.rooms))}
+        assert rooms == set(plan.rooms)
+    places = [plan.place(course.episode * number) for number in range(400)]
+    assert {place.habit for place in places} == set(HABITS)
+    assert all(place.offset == 0 for place in places)
+
+
+def test_the_courses_of_the_package_are_well() -> None:
+    assert streams.courses() == ("home", "still_home")
+    rooms = [streams.open(name, seed=3).rooms for name in streams.courses()]
+    assert rooms[0] == rooms[1]
+    assert len(set(rooms[0])) == 25
+    assert len(streams.open()) == 10_000_000
+
+
+def test_a_test_set_is_not_of_the_stream(stream: Stream) -> None:
+    with stream.test_set(50, 4) as same:
+        frames = list(same)
+        assert len(frames) == 4
+        assert {frame.room for frame in frames} <= set(stream.rooms)
+        assert all(frame.drift == stream.drift(50) for frame in frames)
+        own = {_bytes(stream[frame.number]) for frame in frames}
+        assert own.isdisjoint(map(_bytes, frames))
+        again = [_bytes(frame) for frame in stream.test_set(50, 4)]
+        assert again == [_bytes(frame) for frame in frames]
+
+
+def test_other_rooms_are_none_of_the_streams() -> None:
+    home = streams.open("home", seed=3)
+    assert set(home.rooms).isdisjoint(home.test_set(1000, 8, rooms="other").rooms)
+    assert home.test_set(1000, 8).rooms == home.rooms
+
+
+def test_what_is_not_accepted_is_told(stream: Stream) -> None:
+    with pytest.raises(UnknownName, match="home"):
+        streams.open("hom")
+    with pytest.raises(InvalidRequest, match="format"):
+        streams.open("home", format="torch")
+    with pytest.raises(InvalidRequest, match="'same'"):
+        stream.test_set(0, 4, rooms="other")
+    with pytest.raises(InvalidRequest, match="length"):
+        streams.open("home", length=10_000_001)
+
+
+def test_arrays_are_what_a_data_loader_takes(course: Course) -> None:
+    with streams.open(course, seed=5, length=10, format="arrays") as stream:
+        found = stream[3]
+    assert list(found) == ["number", "rgb", "category", "instance", "flow"]
+    assert found["number"] == 3
+    assert found["rgb"].flags.writeable
+    assert found["rgb"].shape == (32, 48, 3)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("rate: 30", "rate: 0", "rate"),
+        ("category: cup, begin: 12", "category: cpu, begin: 12", "did you mean 'cup'?"),
+        ("begin: 0, end: 2", "begin: 0, end: 20", "from 0 to 8"),
+        ("end: 24}]", "begin: 30, end: 24}]", "must be a frame after 30"),
+        ("smooth_edges: false", "auto_exposure_s: 1", "is not possible in a stream"),
+        ("setting: gain", "setting: jpeg_quality", "setting"),
+        ("scenes: [", "kinds: [kitschen], scenes: [", "did you mean 'kitchen'?"),
+    ],
+)
+def test_errors_of_a_course_have_their_place(
+    course_file: Path, tmp_path: Path, old: str, new: str, told: str
+) -> None:
+    text = course_file.read_text()
+    assert old in text
+    path = tmp_path / "course.yaml"
+    path.write_text(text.replace(old, new))
+    with pytest.raises(SceneError) as caught:
+        streams.load_course(path)
+    (error,) = str(caught.value).splitlines()
+    line = text.split(old)[0].count("\n") + 1
+    assert error.startswith(f"{path}:{line}:")
+    assert told in error
