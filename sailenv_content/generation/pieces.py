@@ -1,4 +1,4 @@
-"""Which piece of a family stands in a room: a seed whose woods, metals and fabrics go together.
+"""Pieces of families for a room: seeds whose woods, metals and fabrics go together.
 
 Names of a rule file in, names of assets out: ``chair~dining:*`` → ``chair~dining:5127``.
 """

@@ -123,7 +123,7 @@ class Course(SceneModel):
         default=25.0, description="frames per simulated second [Hz]"
     )
     episode: Annotated[int, Number(least=2, most=100_000, whole=True)] = Field(
-        default=500, description="frames until the room begins anew"
+        default=500, description="frames until the room begins again"
     )
     visit: Annotated[int, Number(least=1, most=1000, whole=True)] = Field(
         default=8, description="episodes in a row in the same room"

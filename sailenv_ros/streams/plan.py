@@ -1,4 +1,4 @@
-"""Which room a frame of a stream is in, which episode, how its camera goes: numbers alone."""
+"""Room, episode and camera of each frame of a stream: numbers alone."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Plays a stream: the number of a frame in, the frame out.
 
 A simulation in the caller's thread. It goes ahead from the last frame where that is possible, and
-begins the episode anew where it is not; what comes out is the same.
+begins the episode again where it is not; what comes out is the same.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ class Stage:
         for name in self._dice.mixed(loose)[: self._course.moves.pushed]:
             interval = round(self._dice.between(PUSHED_S), 1)
             core.add_behaviour(name, {"type": "poltergeist", "mean_interval": interval})
-        names = sorted(one.name for one in present)
+        names = sorted(one.name for one in present if self._is_below_eyes(one.name))
         self._target = self._dice.one(names) if names else ""
 
     # -- at each tick ------------------------------------------------------------------------
@@ -129,6 +129,9 @@ class Stage:
         return Pose.from_matrix(pose.matrix() @ mount.matrix())
 
     # -- inside ------------------------------------------------------------------------------
+
+    def _is_below_eyes(self, name: str) -> bool:
+        return self._core.get_object(name).pose.position_m[2] < EYE_M
 
     def _objects(self) -> list[Instance]:
         """Return what has a place of its own in the room, parts left out."""

@@ -20,7 +20,7 @@ Colour: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriftRecord:
-    """What a drift does to one frame.
+    """Effect of a drift on one frame.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class DriftRecord:
 
 @dataclass(slots=True, kw_only=True)
 class StreamState:
-    """What all drifts together make of the world; each changes what it is about.
+    """State that all drifts together make of the world; each changes what it is about.
 
     Attributes
     ----------

@@ -38,7 +38,7 @@ class StreamFrame:
     room : str
         Name of its scene.
     episode : int
-        The room began anew with it. Its first frame has no flow: there is none before.
+        The room began again with it. Its first frame has no flow: there is none before.
     habit : str
         How the camera goes: ``walk``, ``carry``, ``fixate`` or ``stand``.
     drift : mapping of str to DriftRecord
@@ -114,7 +114,7 @@ class Stream(Sequence[Any]):
     """Frames by their numbers; see `open`.
 
     Made by one thread. A process that was forked, or to which it was sent, makes a simulation of
-    its own. Going ahead is cheap, going back begins an episode anew.
+    its own. Going ahead is cheap, going back begins an episode again.
     """
 
     def __init__(

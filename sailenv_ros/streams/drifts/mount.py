@@ -1,4 +1,4 @@
-"""A camera that is mounted anew every so many frames: turned, shifted, with another zoom."""
+"""A camera that is mounted again every so many frames: turned, shifted, with another zoom."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Walls that are painted anew every so many frames."""
+"""Walls that are painted again every so many frames."""
 
 from __future__ import annotations
 
