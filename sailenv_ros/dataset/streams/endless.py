@@ -98,19 +98,21 @@ def make_endless(
         If `output` or the unfinished folder beside it is another's, or cannot be written.
     """
     folder = StreamFolder(Path(output), job.identity)
-    with folder.opened():
-        if folder.is_whole:
-            on_frame(job.frames)
-            return folder.path
-        with streams.open(job.course, seed=job.seed, views=job.views) as stream:
-            for first in range(folder.parts * PART_FRAMES, job.frames, PART_FRAMES):
-                last = min(first + PART_FRAMES, job.frames)
-                with folder.part() as draft, RecordingWriter(draft) as writer:
-                    recorder, info = FrameRecorder(writer), None
-                    for done in range(first, last):
-                        info = _record(recorder, stream, job.begin + done, info)
-                        on_frame(done + 1)
-        return folder.finish()
+    return folder.filled(
+        job.frames, PART_FRAMES, lambda begin: _make_parts(job, folder, begin, on_frame), on_frame
+    )
+
+
+def _make_parts(
+    job: EndlessJob, folder: StreamFolder, begin: int, on_frame: Callable[[int], None]
+) -> None:
+    with streams.open(job.course, seed=job.seed, views=job.views) as stream:
+        for first in range(begin, job.frames, PART_FRAMES):
+            with folder.part() as draft, RecordingWriter(draft) as writer:
+                recorder, info = FrameRecorder(writer), None
+                for done in range(first, min(first + PART_FRAMES, job.frames)):
+                    info = _record(recorder, stream, job.begin + done, info)
+                    on_frame(done + 1)
 
 
 def _record(

@@ -141,14 +141,9 @@ def make_stream(
     StreamFolder(Path(output), job.identity)
     content = scene_content(job.kind.scene, job.seed, job.light)
     folder = StreamFolder(Path(output), {**job.identity, **content})
-    with folder.opened():
-        if folder.is_whole:
-            on_frame(job.frames)
-            return folder.path
-        begin = folder.parts * PART_FRAMES
-        if begin < job.frames:
-            _make_parts(job, folder, begin, on_frame)
-        return folder.finish()
+    return folder.filled(
+        job.frames, PART_FRAMES, lambda begin: _make_parts(job, folder, begin, on_frame), on_frame
+    )
 
 
 def stream_pairs(job: StreamJob, pairs: int) -> Iterator[tuple[int, Frame, Frame, SceneInfo]]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -80,6 +80,40 @@ class StreamFolder:
                 stack.enter_context(self._store.opened())
                 self._check()
             yield
+
+    def filled(
+        self,
+        frames: int,
+        part_frames: int,
+        make_from: Callable[[int], None],
+        on_frame: Callable[[int], None],
+    ) -> Path:
+        """Make what is missing, and return the folder.
+
+        Parameters
+        ----------
+        frames : int
+            Of the whole stream.
+        part_frames : int
+            Of each part but the last.
+        make_from : callable
+            Makes all parts from the one on that begins with a frame.
+        on_frame : callable
+            Told the number of frames if all are there already.
+
+        Raises
+        ------
+        RecordingError, WriteFailed, DeadlineExceeded
+            As of `opened` and `finish`.
+        """
+        with self.opened():
+            if self.is_whole:
+                on_frame(frames)
+                return self.path
+            begin = self.parts * part_frames
+            if begin < frames:
+                make_from(begin)
+            return self.finish()
 
     @contextmanager
     def part(self) -> Iterator[Path]:

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar
+from typing import Any, ClassVar
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Rule, SceneModel
+from sailenv_ros.streams.fields import FrameNumber
 from sailenv_ros.streams.state import DriftRecord, StreamState
 
 __all__ = ["ClassSpan"]
-
-_Frame = Annotated[int, Number(least=0, most=10**9, whole=True)]
 
 
 def _ends_later(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
@@ -28,8 +26,8 @@ class ClassSpan(SceneModel):
     rules: ClassVar[tuple[Rule, ...]] = (_ends_later,)
 
     category: str = Field(min_length=1, description="name of a category")
-    begin: _Frame = Field(default=0, description="first frame with it")
-    end: _Frame = Field(default=10**9, description="first frame without it again")
+    begin: FrameNumber = Field(default=0, description="first frame with it")
+    end: FrameNumber = Field(default=10**9, description="first frame without it again")
 
     def is_there(self, frame: int) -> bool:
         """Return whether a frame may have it."""

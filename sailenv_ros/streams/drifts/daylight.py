@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
 
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Fraction, SceneModel
+from sailenv_ros.streams.fields import FrameCount
 from sailenv_ros.streams.state import DriftRecord, StreamState
 
 __all__ = ["Daylight"]
-
-_Frames = Annotated[int, Number(least=2, most=10**9, whole=True)]
 
 NIGHT = 0.25
 """Share of the day's light below which lamps are lit."""
@@ -25,8 +22,8 @@ _RED = (1.0, 0.62, 0.35)
 class Daylight(SceneModel):
     """Day and year; frame 0 is at noon of a spring day."""
 
-    day: _Frames = Field(default=20_000, description="frames of a day")
-    year: _Frames = Field(default=2_000_000, description="frames of a year")
+    day: FrameCount = Field(default=20_000, description="frames of a day")
+    year: FrameCount = Field(default=2_000_000, description="frames of a year")
     night: Fraction = Field(default=0.04, description="share of the light that is left at night")
     season: Fraction = Field(default=0.3, description="by how much a winter's noon is darker")
     lamps_by_day: Fraction = Field(default=0.2, description="power of lamps while it is light")

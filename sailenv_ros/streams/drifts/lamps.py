@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Fraction, SceneModel
+from sailenv_ros.streams.fields import FrameCount, FrameNumber
 from sailenv_ros.streams.state import DriftRecord, StreamState, progress
 
 __all__ = ["LampAge"]
-
-_Frame = Annotated[int, Number(least=0, most=10**9, whole=True)]
 
 _OLD = (1.0, 0.82, 0.6)
 
@@ -20,10 +16,8 @@ _OLD = (1.0, 0.82, 0.6)
 class LampAge(SceneModel):
     """Age of all lamps; they are new again after each life."""
 
-    onset: _Frame = Field(default=0, description="frame from which on they age")
-    life: Annotated[int, Number(least=2, most=10**9, whole=True)] = Field(
-        default=300_000, description="frames until they are replaced"
-    )
+    onset: FrameNumber = Field(default=0, description="frame from which on they age")
+    life: FrameCount = Field(default=300_000, description="frames until they are replaced")
     left: Fraction = Field(default=0.4, description="share of their power at the end of their life")
 
     def apply(self, state: StreamState, frame: int, seed: int) -> DriftRecord:

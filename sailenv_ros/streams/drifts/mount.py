@@ -9,20 +9,17 @@ from pydantic import Field
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Fraction, SceneModel
+from sailenv_ros.streams.fields import FrameCount, FrameNumber
 from sailenv_ros.streams.state import DriftRecord, StreamState
 
 __all__ = ["Mount"]
-
-_Frame = Annotated[int, Number(least=0, most=10**9, whole=True)]
 
 
 class Mount(SceneModel):
     """How a camera sits on what carries it; exactly, before the onset."""
 
-    onset: _Frame = Field(default=150_000, description="frame of the first change")
-    every: Annotated[int, Number(least=1, most=10**9, whole=True)] = Field(
-        default=150_000, description="frames from one mounting to the next"
-    )
+    onset: FrameNumber = Field(default=150_000, description="frame of the first change")
+    every: FrameCount = Field(default=150_000, description="frames from one mounting to the next")
     turn: Annotated[float, Number(least=0.0, most=45.0, unit="deg")] = Field(
         default=5.0, description="most about each axis [deg]"
     )

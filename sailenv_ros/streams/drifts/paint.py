@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 from pydantic import Field
 
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
-from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import LinearColour, SceneModel
+from sailenv_ros.streams.fields import FrameCount, FrameNumber
 from sailenv_ros.streams.state import DriftRecord, StreamState
 from sailenv_ros.types.colour import linear_from_hex
 
 __all__ = ["Paint"]
-
-_Frame = Annotated[int, Number(least=0, most=10**9, whole=True)]
 
 
 PAINTS = tuple(
@@ -26,10 +22,8 @@ PAINTS = tuple(
 class Paint(SceneModel):
     """The colour of all walls; the rooms' own before the onset."""
 
-    onset: _Frame = Field(default=100_000, description="frame at which they are painted first")
-    every: Annotated[int, Number(least=1, most=10**9, whole=True)] = Field(
-        default=100_000, description="frames from one painting to the next"
-    )
+    onset: FrameNumber = Field(default=100_000, description="frame at which they are painted first")
+    every: FrameCount = Field(default=100_000, description="frames from one painting to the next")
     colours: tuple[LinearColour, ...] = Field(
         default=PAINTS,
         min_length=1,

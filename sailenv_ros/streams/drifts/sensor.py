@@ -10,12 +10,12 @@ from pydantic import Field
 from sailenv_ros.scene.field_types import Choice, Number
 from sailenv_ros.scene.fields import Rule, SceneModel
 from sailenv_ros.scene.messages import shown
+from sailenv_ros.streams.fields import FrameNumber
 from sailenv_ros.streams.state import DriftRecord, StreamState, progress
 from sailenv_ros.types.picture_settings import LIMITS
 
 __all__ = ["SensorDrift"]
 
-_Frame = Annotated[int, Number(least=0, most=10**9, whole=True)]
 _Value = Annotated[float, Number(least=-1e9, most=1e9)]
 
 SETTINGS = ("exposure", "bloom", "full_well", "read_noise", "gain", "vignetting", "lateral_colour")
@@ -36,10 +36,8 @@ class SensorDrift(SceneModel):
     rules: ClassVar[tuple[Rule, ...]] = (_within_limits,)
 
     setting: Annotated[str, Choice(SETTINGS)] = Field(description="name of a picture's setting")
-    onset: _Frame = Field(default=0, description="frame from which on it drifts")
-    over: Annotated[int, Number(least=0, most=10**9, whole=True)] = Field(
-        description="frames until it has arrived; 0: at once"
-    )
+    onset: FrameNumber = Field(default=0, description="frame from which on it drifts")
+    over: FrameNumber = Field(description="frames until it has arrived; 0: at once")
     begin: _Value = Field(description="value before")
     end: _Value = Field(description="value afterwards")
 

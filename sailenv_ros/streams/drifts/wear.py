@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 from pydantic import Field
 
-from sailenv_ros.scene.field_types import Number
 from sailenv_ros.scene.fields import Fraction, SceneModel
+from sailenv_ros.streams.fields import FrameCount, FrameNumber
 from sailenv_ros.streams.state import DriftRecord, StreamState, progress
 
 __all__ = ["Wear"]
-
-_Frame = Annotated[int, Number(least=0, most=10**9, whole=True)]
 
 
 class Wear(SceneModel):
     """How far furniture has yellowed; it stays as it is at the end."""
 
-    onset: _Frame = Field(default=200_000, description="frame from which on it wears")
-    over: Annotated[int, Number(least=1, most=10**9, whole=True)] = Field(
-        default=1_000_000, description="frames until it is worn"
-    )
+    onset: FrameNumber = Field(default=200_000, description="frame from which on it wears")
+    over: FrameCount = Field(default=1_000_000, description="frames until it is worn")
     most: Fraction = Field(default=0.6, description="how far it yellows, 1 being brown")
 
     def apply(self, state: StreamState, frame: int, seed: int) -> DriftRecord:
