@@ -152,7 +152,7 @@ class Furnisher:
         if alike and self.dice.chance(rule.alike):
             return alike[-1]
         fresh = [asset for asset in rule.assets if asset not in present] or rule.assets
-        return self.pieces.chosen(self.dice.one(fresh))
+        return self.pieces.one_of(fresh)
 
     def _fits(self, item: Item, rule: FurnitureRule, name: str, group: _Group) -> bool:
         """Return whether a piece can stand where it was drawn; it is in the group then."""

@@ -5,7 +5,7 @@ Names of a rule file in, names of assets out: ``chair~dining:*`` → ``chair~din
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,6 +28,9 @@ SEEDS = (0, 99_999)
 
 DRAWS = 12
 """Seeds that are compared, for the one that suits the room best."""
+
+SEEDED = 0.75
+"""Share of pieces by seeds where a rule names objects of the catalogue too."""
 
 _METALS = ("chrome", "steel", "brass", "coated #26272a")
 _METAL_WEIGHT = 0.5
@@ -83,6 +86,13 @@ class PieceChooser:
 
     def __init__(self, dice: RandomStream, style: RoomStyle | None = None) -> None:
         self._dice, self._style = dice, style
+
+    def one_of(self, names: Sequence[str]) -> str:
+        """Return an asset of several names, most often one of a seed: the others are few."""
+        seeded = [name for name in names if name.endswith(ANY_SEED)]
+        listed = [name for name in names if not name.endswith(ANY_SEED)]
+        some = seeded if seeded and (not listed or self._dice.chance(SEEDED)) else listed
+        return self.chosen(self._dice.one(some))
 
     def chosen(self, name: str) -> str:
         """Return the name of an asset, which has no seed left to be drawn."""
