@@ -46,9 +46,11 @@ REQUIREMENTS = [
 # The names with "jazzy" pin the others; the names without have newer versions of other releases.
 ROS = [
     "sailenv-msgs",
+    "ros-jazzy-action-msgs",
     "ros-jazzy-builtin-interfaces",
     "ros-jazzy-diagnostic-msgs",
     "ros-jazzy-geometry-msgs",
+    "ros-jazzy-nav-msgs",
     "ros-jazzy-rcl-interfaces",
     "ros-jazzy-rclpy",
     "ros-jazzy-rmw-fastrtps-cpp",
@@ -56,6 +58,7 @@ ROS = [
     "ros-jazzy-sensor-msgs",
     "ros-jazzy-std-msgs",
     "ros-jazzy-std-srvs",
+    "ros-jazzy-stereo-msgs",
 ]
 # What only importing models and building the furniture pack need; reading packs does without.
 ASSETS = [

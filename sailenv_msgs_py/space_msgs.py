@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from geometry_msgs.msg import Point, Quaternion, Vector3
 from geometry_msgs.msg import Pose as PoseMsg
+from nav_msgs.msg import OccupancyGrid
 from numpy.typing import NDArray
 
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
@@ -90,16 +91,9 @@ def free_space_from_response(response: Any) -> FreeSpace:
     )
 
 
-def occupancy_grid_to_msg(space: FreeSpace, type_: Any) -> Any:
-    """Make a nav_msgs/OccupancyGrid.
-
-    Parameters
-    ----------
-    space : FreeSpace
-    type_ : type
-        The message's class, which not every installation of ROS 2 has.
-    """
-    message = type_()
+def occupancy_grid_to_msg(space: FreeSpace) -> OccupancyGrid:
+    """Make the map as map servers publish it."""
+    message = OccupancyGrid()
     message.header.stamp = stamp_from_ns(space.stamp_ns)
     message.header.frame_id = WORLD_FRAME_ID
     message.info.map_load_time = stamp_from_ns(space.stamp_ns)

@@ -1,13 +1,24 @@
-"""A frame's visible objects as `vision_msgs` detections; where that package is installed."""
+"""A frame's visible objects as `vision_msgs` detections."""
 
 from __future__ import annotations
 
 from copy import copy
-from typing import Any
 
 import numpy as np
 from geometry_msgs.msg import Point, Vector3
 from std_msgs.msg import Header
+from vision_msgs.msg import (
+    BoundingBox2D,
+    BoundingBox3D,
+    Detection2D,
+    Detection2DArray,
+    Detection3D,
+    Detection3DArray,
+    ObjectHypothesis,
+    ObjectHypothesisWithPose,
+    Point2D,
+    Pose2D,
+)
 
 from sailenv_msgs_py.object_truth_msgs import poses_of
 from sailenv_ros.frame.frame import Frame
@@ -16,21 +27,13 @@ from sailenv_ros.frame.truth.object_table import ObjectTable
 __all__ = ["detections_2d_to_msg", "detections_3d_to_msg"]
 
 
-def detections_2d_to_msg(frame: Frame, header: Header) -> Any:
+def detections_2d_to_msg(frame: Frame, header: Header) -> Detection2DArray:
     """Make a `Detection2DArray`: the box around the visible pixels of each object, in pixels.
 
     The box is that of `sailenv_msgs/ObjectTruth`; its centre and size count whole pixels, so that a
     single pixel at (u, v) has the centre u, v and the size 1, 1. The class is the category's name,
     the id the object's instance id.
     """
-    from vision_msgs.msg import (
-        BoundingBox2D,
-        Detection2D,
-        Detection2DArray,
-        Point2D,
-        Pose2D,
-    )
-
     table = _visible(frame)
     found = []
     for row, (left, top, right, bottom) in enumerate(table.visible_boxes.tolist()):
@@ -51,10 +54,8 @@ def detections_2d_to_msg(frame: Frame, header: Header) -> Any:
     return Detection2DArray(header=header, detections=found)
 
 
-def detections_3d_to_msg(frame: Frame, header: Header) -> Any:
+def detections_3d_to_msg(frame: Frame, header: Header) -> Detection3DArray:
     """Make a `Detection3DArray`: the oriented box of each visible object, in the optical frame."""
-    from vision_msgs.msg import BoundingBox3D, Detection3D, Detection3DArray
-
     table = _visible(frame)
     boxes = table.camera_from_object.copy()
     to_camera = frame.camera.camera_from_world
@@ -75,9 +76,7 @@ def _visible(frame: Frame) -> ObjectTable:
     return table.select(table.visible & np.isfinite(table.distances))
 
 
-def _hypothesis(table: ObjectTable, row: int) -> Any:
-    from vision_msgs.msg import ObjectHypothesis, ObjectHypothesisWithPose
-
+def _hypothesis(table: ObjectTable, row: int) -> ObjectHypothesisWithPose:
     result = ObjectHypothesisWithPose(
         hypothesis=ObjectHypothesis(class_id=table.categories[row], score=1.0)
     )

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+
+ROS_IS_SOURCED = bool(os.environ.get("AMENT_PREFIX_PATH") and os.environ.get("ROS_DISTRO"))
 
 BUILT_FROM = (
     "setup.py",

@@ -10,12 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.packaging.project import ROOT, copy_sources
+from tests.packaging.project import ROOT, ROS_IS_SOURCED, copy_sources
 from tests.packaging.started_node import assert_publishes
 
 pytestmark = [pytest.mark.slow, pytest.mark.ros, pytest.mark.timeout(2400)]
 
-ROS_IS_SOURCED = bool(os.environ.get("AMENT_PREFIX_PATH") and os.environ.get("ROS_DISTRO"))
 SCRIPTS = Path(sys.prefix) / "bin"
 
 OURS = ("PYTHONPATH", "VIRTUAL_ENV", "SAILENV_INSTALLED_PREFIX")

@@ -40,7 +40,6 @@ def test_every_ros_package_that_is_imported_is_declared() -> None:
     imported = _imported_ros_packages()
     assert "rclpy" in imported
     assert imported <= declared
-    assert "tf2_msgs" in declared  # imported by name, as the packages on PyPI lack it
 
 
 def test_messages_declare_what_they_use() -> None:

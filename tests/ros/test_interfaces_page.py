@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -44,9 +43,8 @@ def topics_of_the_page() -> dict[str, str]:
     """Return the topics with their types, as ROS spells them."""
     found: dict[str, str] = {}
     for names, type_, about in table("Topics"):
-        needed = re.search(r"where `(\w+)` is installed", about)
-        if needed and find_spec(needed[1]) is None:
-            continue
+        if "of a rectified [rig]" in about:
+            continue  # this simulator has none
         package, _, word = type_.strip("`").partition("/")
         found |= {full_name(name): f"{package}/msg/{word}" for name in names.split(", ")}
     return found

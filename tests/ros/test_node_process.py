@@ -107,6 +107,7 @@ WRONG: tuple[tuple[dict[str, object], str], ...] = (
     ({"agent.near_m": 200.0}, "near_m must be less than far_m"),
     ({"agent.name": "No Name"}, "name of the agent must be"),
     ({"mode": "fast"}, "parameter mode must be one of: realtime, lockstep, got 'fast'"),
+    ({"use_sim_time": True}, "use_sim_time must be false for the simulator, which is the source"),
     ({"seed": "many"}, "parameter seed must be of the type of 0, got 'many'"),
     ({"widht": 3}, "parameter must be one of: scene,"),
     ({"scene_paths": 3}, "parameter scene_paths must be of the type of"),

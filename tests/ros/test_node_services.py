@@ -332,3 +332,13 @@ def test_a_parameter_that_cannot_change_says_so(probe: Probe) -> None:
     [result] = probe.call(SetParameters, "sim_node/set_parameters", request).results
     assert not result.successful
     assert "read-only" in result.reason
+
+
+def test_the_source_of_time_follows_no_clock(probe: Probe) -> None:
+    """`use_sim_time` is refused in a sentence; false, as it is, is accepted."""
+    for value in (True, False):
+        asked = [Parameter("use_sim_time", value=value).to_parameter_msg()]
+        request = SetParameters.Request(parameters=asked)
+        [result] = probe.call(SetParameters, "sim_node/set_parameters", request).results
+        assert result.successful != value
+        assert ("source of simulated time" in result.reason) == value

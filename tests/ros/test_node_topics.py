@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -11,6 +11,8 @@ from geometry_msgs.msg import PoseStamped
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import CameraInfo, Image
+from tf2_msgs.msg import TFMessage
+from vision_msgs.msg import Detection3DArray
 
 from sailenv_msgs.msg import AgentInfo, FrameInfo, SceneInfo
 from sailenv_msgs.srv import (
@@ -28,7 +30,7 @@ from sailenv_msgs_py.services import AGENT_SERVICES, SERVICES, SIMULATOR_SERVICE
 from sailenv_msgs_py.stamps import ns_from_stamp
 from sailenv_msgs_py.transforms import pose_from_msg, pose_to_msg
 from sailenv_ros.simulation.operations import ALL_OPERATIONS
-from sailenv_ros.types.geometry import invert, look_at
+from sailenv_ros.types.geometry import Pose, invert, look_at
 from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS
 from tests.support.ros_probe import BEST_EFFORT, LATCHED, Eye, Probe
 from tests.support.sim_node_process import NodeProcess
@@ -77,14 +79,10 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
         f"{NAMESPACE}/agent/objects": "sailenv_msgs/msg/Objects",
         f"{NAMESPACE}/agent/objects/amodal": "sailenv_msgs/msg/Objects",
         f"{NAMESPACE}/agent/points": "sensor_msgs/msg/PointCloud2",
-        **(
-            {
-                f"{NAMESPACE}/agent/detections_{n}d": f"vision_msgs/msg/Detection{n}DArray"
-                for n in (2, 3)
-            }
-            if find_spec("vision_msgs")
-            else {}
-        ),
+        **{
+            f"{NAMESPACE}/agent/detections_{n}d": f"vision_msgs/msg/Detection{n}DArray"
+            for n in (2, 3)
+        },
         f"{NAMESPACE}/agent/camera_info": "sensor_msgs/msg/CameraInfo",
         f"{NAMESPACE}/agent/frame_info": "sailenv_msgs/msg/FrameInfo",
         f"{NAMESPACE}/agent/pose": "geometry_msgs/msg/PoseStamped",
@@ -92,11 +90,9 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
         f"{NAMESPACE}/contacts": "sailenv_msgs/msg/Contacts",
         f"{NAMESPACE}/joint_states": "sensor_msgs/msg/JointState",
         f"{NAMESPACE}/lesson": "std_msgs/msg/String",
-        **(
-            {f"{NAMESPACE}/free_space": "nav_msgs/msg/OccupancyGrid"}
-            if find_spec("nav_msgs")
-            else {}
-        ),
+        f"{NAMESPACE}/free_space": "nav_msgs/msg/OccupancyGrid",
+        "/tf": "tf2_msgs/msg/TFMessage",
+        "/tf_static": "tf2_msgs/msg/TFMessage",
         "/clock": "rosgraph_msgs/msg/Clock",
     }
 
@@ -194,6 +190,38 @@ def test_one_stamp_and_the_promised_encodings(probe: Probe) -> None:
     assert (info.agent, info.scene) == ("agent", "optical")
     assert info.dt_ns in (33_333_333, 33_333_334)
     assert list(info.views) == list(RENDERED_VIEWS)
+
+
+def test_the_tree_of_frames_leads_to_the_camera(probe: Probe) -> None:
+    """/tf and /tf_static, as tf2 multiplies them, are the pose that the frame tells."""
+    fixed = probe.listen(TFMessage, "/tf_static", LATCHED)
+    moving = probe.listen(TFMessage, "/tf")
+    info = probe.listen(FrameInfo, "agent/frame_info")
+    boxes = probe.listen(Detection3DArray, "agent/detections_3d")
+
+    def told() -> set[int]:
+        stamps = {ns_from_stamp(m.transforms[0].header.stamp) for m in moving.messages}
+        return stamps & set(info.stamps()) & set(boxes.stamps())
+
+    step_until(probe, lambda: fixed.messages and told(), "transforms of a frame")
+    stamp = max(told())
+    links = {
+        (one.header.frame_id, one.child_frame_id): one.transform
+        for message in (*fixed.messages, *moving.messages)
+        for one in message.transforms
+        if message in fixed.messages or ns_from_stamp(one.header.stamp) == stamp
+    }
+    chain = ("world", "agent", "agent/camera_frame", "agent/camera_optical_frame")
+    product = np.eye(4)
+    for link in itertools.pairwise(chain):
+        at, turn = links[link].translation, links[link].rotation
+        product = product @ Pose((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w)).matrix()
+    true = info.messages[info.stamps().index(stamp)].camera_pose
+    np.testing.assert_allclose(product, pose_from_msg(true).matrix(), atol=1e-9)
+    seen = boxes.messages[boxes.stamps().index(stamp)]
+    assert seen.header.frame_id == chain[-1]
+    assert all(one.bbox.center.position.z > 0.0 for one in seen.detections)
+    assert seen.detections
 
 
 def test_the_motion_to_the_next_frame_comes_with_it(probe: Probe) -> None:

@@ -1,13 +1,10 @@
-"""`<agent>/disparity` of a rectified rig, where stereo_msgs is installed.
+"""`<agent>/disparity` of a rectified rig.
 
 Frames of both cameras in, `stereo_msgs/DisparityImage` out, made only while somebody subscribes.
-The ROS 2 packages on PyPI lack stereo_msgs; without it every call does nothing.
 """
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 import threading
 from collections.abc import Iterable
 from contextlib import suppress
@@ -19,6 +16,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Header
+from stereo_msgs.msg import DisparityImage
 
 from sailenv_msgs_py.frame_info import header_of_frame
 from sailenv_msgs_py.images import image_from_view
@@ -56,14 +54,9 @@ class DisparityTopics:
         self._node = node
         self._lock = threading.Lock()
         self._pairs: dict[str, _Pair] = {}
-        self._message: Any = None
-        if importlib.util.find_spec("stereo_msgs") is not None:
-            self._message = importlib.import_module("stereo_msgs.msg").DisparityImage
 
     def set_agents(self, agents: Iterable[AgentSpec]) -> None:
         """Make the topics that are missing, and remove those of rigs that are gone."""
-        if self._message is None:
-            return
         wanted = stereo_pairs(agents)
         with self._lock:
             for body, pair in list(self._pairs.items()):
@@ -72,7 +65,10 @@ class DisparityTopics:
             for body, (left, right) in wanted.items():
                 if body not in self._pairs:
                     publisher = self._node.create_publisher(
-                        self._message, f"{body}/disparity", frame_qos(), event_callbacks=no_events()
+                        DisparityImage,
+                        f"{body}/disparity",
+                        frame_qos(),
+                        event_callbacks=no_events(),
                     )
                     self._pairs[body] = _Pair(left, right, publisher)
 
@@ -83,7 +79,7 @@ class DisparityTopics:
 
     def publish(self, frame: Frame) -> None:
         """Take a camera's frame; publish the disparity if the other one's is of its instant."""
-        if self._message is None or not frame.views.keys() >= NEEDED:
+        if not frame.views.keys() >= NEEDED:
             return
         with self._lock:
             for pair in self._subscribed(frame.agent):
@@ -96,7 +92,7 @@ class DisparityTopics:
                     with suppress(InvalidRequest):  # a camera was changed a moment ago
                         found = disparity(left, right)
                         fields = disparity_fields(found, header_of_frame(left))
-                        pair.publisher.publish(self._message(**fields))
+                        pair.publisher.publish(DisparityImage(**fields))
 
     def _subscribed(self, agent: str) -> list[_Pair]:
         return [

@@ -12,6 +12,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from sailenv_ros.errors import SailenvError
+from sailenv_ros.ros.nodes.parameter_table import USE_SIM_TIME, without_a_clock
 from sailenv_ros.simulation import Simulation
 
 __all__ = ["LiveParameters"]
@@ -36,7 +37,9 @@ class LiveParameters:
         node.add_post_set_parameters_callback(self._apply)
 
     def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
-        """Refuse a rate where its agent is gone."""
+        """Refuse a rate where its agent is gone, and a clock to follow."""
+        if any(p.name == USE_SIM_TIME and p.value for p in parameters):
+            return SetParametersResult(successful=False, reason=str(without_a_clock(True)))
         agents = [spec.name for spec in self._simulation.info.agents]
         if any(p.name == "agent.rate_hz" for p in parameters) and self._agent not in agents:
             why = f"agent {self._agent!r} is gone; use the service set_rate of another agent"

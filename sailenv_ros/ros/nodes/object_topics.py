@@ -1,14 +1,11 @@
 """Topics of what is known of a frame's objects, and its point cloud.
 
-`Frame` → `objects`, `objects/amodal`, `points`, and where vision_msgs is installed `detections_2d`
-and `detections_3d`; each made only while somebody subscribes. The ROS 2 packages on PyPI lack
-vision_msgs. Knows no simulation.
+`Frame` → `objects`, `objects/amodal`, `points`, `detections_2d` and `detections_3d`; each made only
+while somebody subscribes. Knows no simulation.
 """
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,6 +14,7 @@ from typing import Any
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
+from vision_msgs.msg import Detection2DArray, Detection3DArray
 
 from sailenv_msgs.msg import Objects
 from sailenv_msgs_py.object_truth_msgs import objects_to_msg
@@ -59,21 +57,17 @@ class ObjectTopics:
                 ("rgb", "depth", "category", "instance"),
                 point_cloud_to_msg,
             ),
+            _Topic(
+                make_publisher(Detection2DArray, "detections_2d"),
+                ("instance",),
+                detections_2d_to_msg,
+            ),
+            _Topic(
+                make_publisher(Detection3DArray, "detections_3d"),
+                ("instance",),
+                detections_3d_to_msg,
+            ),
         ]
-        if importlib.util.find_spec("vision_msgs") is not None:
-            vision: Any = importlib.import_module("vision_msgs.msg")
-            self._topics += [
-                _Topic(
-                    make_publisher(vision.Detection2DArray, "detections_2d"),
-                    ("instance",),
-                    detections_2d_to_msg,
-                ),
-                _Topic(
-                    make_publisher(vision.Detection3DArray, "detections_3d"),
-                    ("instance",),
-                    detections_3d_to_msg,
-                ),
-            ]
 
     @property
     def publishers(self) -> tuple[Publisher, ...]:

@@ -26,7 +26,16 @@ from sailenv_ros.types.views import FIVE_VIEWS, RENDERED_VIEWS
 from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
 from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
 
-__all__ = ["LIVE", "NAMESPACE", "PARAMETERS", "Parameter", "SimParameters", "sim_parameters"]
+__all__ = [
+    "LIVE",
+    "NAMESPACE",
+    "PARAMETERS",
+    "USE_SIM_TIME",
+    "Parameter",
+    "SimParameters",
+    "sim_parameters",
+    "without_a_clock",
+]
 
 NAMESPACE = "/sailenv"
 """The nodes', unless ROS is told another."""
@@ -110,6 +119,9 @@ class Parameter:
 
 LIVE = ("real_time_factor", "agent.rate_hz")
 """Parameters that take effect while the node runs."""
+
+USE_SIM_TIME = "use_sim_time"
+"""A parameter of every node of ROS: follow /clock."""
 
 _PORT = Bounds(least=0, most=65535, whole=True)
 _DEVICE = Bounds(least=-1, most=15, whole=True)
@@ -237,6 +249,12 @@ def sim_parameters(values: Mapping[str, Any]) -> SimParameters:
         viewer_control=values["viewer.control"],
         agent=_agent(values),
     )
+
+
+def without_a_clock(given: object) -> InvalidRequest:
+    """Return the error for a simulator that shall follow the clock that it publishes."""
+    accepted = "false for the simulator, which is the source of simulated time"
+    return InvalidRequest(f"parameter {USE_SIM_TIME}", given, accepted)
 
 
 def _agent(values: Mapping[str, Any]) -> AgentSpec | None:

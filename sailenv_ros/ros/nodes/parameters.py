@@ -16,9 +16,11 @@ from sailenv_ros.errors import UnknownName
 from sailenv_ros.ros.nodes.parameter_table import (
     LIVE,
     PARAMETERS,
+    USE_SIM_TIME,
     Parameter,
     SimParameters,
     sim_parameters,
+    without_a_clock,
 )
 
 __all__ = ["declare_parameters", "declare_table"]
@@ -32,6 +34,8 @@ def declare_parameters(node: Node) -> SimParameters:
     InvalidRequest
         If a value that was given has the wrong type or is out of range, or a name is unknown.
     """
+    if node.get_parameter(USE_SIM_TIME).value:
+        raise without_a_clock(True)
     return sim_parameters(declare_table(node, PARAMETERS))
 
 

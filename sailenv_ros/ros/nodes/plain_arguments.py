@@ -14,9 +14,11 @@ import yaml
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.ros.nodes.parameter_table import (
     PARAMETERS,
+    USE_SIM_TIME,
     Parameter,
     SimParameters,
     sim_parameters,
+    without_a_clock,
 )
 from sailenv_ros.system.yaml_text import from_yaml
 
@@ -39,6 +41,9 @@ def plain_parameters(arguments: Sequence[str]) -> SimParameters | None:
     given = _assignments(arguments)
     if given is None:
         return None
+    of_time = given.pop(USE_SIM_TIME, "false")
+    if of_time != "false":
+        raise without_a_clock(of_time)
     for name in given:
         if name not in PARAMETERS:
             raise UnknownName("parameter", name, PARAMETERS)

@@ -1,18 +1,15 @@
-"""`/tf` and `/tf_static`: world → agent → camera → optical frame, where tf2_msgs is installed.
+"""`/tf` and `/tf_static`: world → agent → camera → optical frame.
 
 Of a rig: world → agent → each of its cameras → optical frame.
 
 On request also world → object, for every instance.
 
-Frames and agents' names in, transforms out. package.xml declares tf2_msgs, so a ROS 2 installation
-has it; the ROS 2 packages on PyPI lack it. Without it every call does nothing, and the topic
-`<agent>/pose` holds the same poses.
+Frames and agents' names in, transforms out. Names of frames are `<agent>/…_frame`; an optical frame
+has `optical` in it (REP 103).
 """
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 import threading
 from collections.abc import Iterable
 from typing import Any
@@ -20,6 +17,7 @@ from typing import Any
 from geometry_msgs.msg import TransformStamped, Vector3
 from rclpy.node import Node
 from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
 
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, optical_frame_id
 from sailenv_msgs_py.transforms import pose_to_msg
@@ -35,7 +33,7 @@ __all__ = ["TfTree", "camera_frame_id", "fixed_transforms", "object_frame_id", "
 
 def camera_frame_id(agent: str) -> str:
     """Return the name of the frame of an agent's camera (x forward, y left, z up)."""
-    return f"{agent}_camera"
+    return f"{agent}/camera_frame"
 
 
 def object_frame_id(name: str) -> str:
@@ -82,38 +80,34 @@ class TfTree:
         self._instances = instances
         self._told_ns = -1
         self._telling = threading.Lock()
-        self._message: Any = None
         self._static: dict[str, list[TransformStamped]] = {}
         self._extrinsics: dict[str, Pose | None] = {}
         self._bodies: frozenset[str] = frozenset()
         self._told_bodies: dict[str, tuple[int, int]] = {}
-        if importlib.util.find_spec("tf2_msgs") is None:
-            return
-        self._message = importlib.import_module("tf2_msgs.msg").TFMessage
         # tf2's own names and qualities of service: global topics, latched for the static ones.
         self._moving = node.create_publisher(
-            self._message, "/tf", frame_qos(), event_callbacks=no_events()
+            TFMessage, "/tf", frame_qos(), event_callbacks=no_events()
         )
         self._fixed = node.create_publisher(
-            self._message, "/tf_static", latched_qos(), event_callbacks=no_events()
+            TFMessage, "/tf_static", latched_qos(), event_callbacks=no_events()
         )
 
     @property
     def wanted(self) -> bool:
         """True if somebody subscribes to /tf."""
-        return self._message is not None and bool(self._moving.get_subscription_count())
+        return bool(self._moving.get_subscription_count())
 
     def set_agents(self, agents: Iterable[AgentSpec]) -> None:
         """Take note of the agents that there are."""
         extrinsics = {spec.name: spec.extrinsics for spec in agents}
-        if self._message is None or extrinsics == self._extrinsics:
+        if extrinsics == self._extrinsics:
             return
         self._extrinsics = extrinsics
         self._bodies = frozenset(map(body_of, extrinsics))
         self._static = {name: fixed_transforms(name, pose) for name, pose in extrinsics.items()}
         every = [transform for listed in self._static.values() for transform in listed]
         # One latched message holds them all: a reader that comes late gets the last one alone.
-        self._fixed.publish(self._message(transforms=every))
+        self._fixed.publish(TFMessage(transforms=every))
 
     def publish(self, agent: str, pose: Pose, stamp: Any) -> None:
         """Send where an agent is at an instant; of a camera of a rig, where its body is.
@@ -132,7 +126,7 @@ class TfTree:
                 return
             self._told_bodies[body] = at
             header = Header(stamp=stamp, frame_id=WORLD_FRAME_ID)
-            self._moving.publish(self._message(transforms=[transform_of(pose, header, body)]))
+            self._moving.publish(TFMessage(transforms=[transform_of(pose, header, body)]))
 
     def publish_instances(self, frame: Frame, stamp: Any) -> None:
         """Send where every instance of a frame is, if that is asked for.
@@ -154,4 +148,4 @@ class TfTree:
                     pose = Pose(tuple(states.positions[row]), tuple(states.orientations[row]))
                     frame_id = object_frame_id(names[number].name)
                     transforms.append(transform_of(pose, header, frame_id))
-            self._moving.publish(self._message(transforms=transforms))
+            self._moving.publish(TFMessage(transforms=transforms))

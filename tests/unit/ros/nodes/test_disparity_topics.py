@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
-import sys
 import types
 from dataclasses import dataclass, field
 from typing import Any
@@ -50,22 +48,6 @@ class FakeNode:
         del self.sent[publisher.topic]
 
 
-@pytest.fixture
-def stereo_installed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An installation that has stereo_msgs: the true package where there is one."""
-    find = importlib.util.find_spec
-    if find("stereo_msgs") is not None:
-        return
-    messages = types.ModuleType("stereo_msgs.msg")
-    messages.DisparityImage = types.SimpleNamespace  # type: ignore[attr-defined]  # made here
-    monkeypatch.setitem(sys.modules, "stereo_msgs", types.ModuleType("stereo_msgs"))
-    monkeypatch.setitem(sys.modules, "stereo_msgs.msg", messages)
-    monkeypatch.setattr(
-        importlib.util, "find_spec", lambda name: name if name == "stereo_msgs" else find(name)
-    )
-
-
-@pytest.mark.usefixtures("stereo_installed")
 def test_a_pair_of_one_instant_becomes_a_message() -> None:
     """Values of what both see, -1 elsewhere; a frame of another instant makes none."""
     node = FakeNode()
@@ -96,7 +78,6 @@ def test_a_pair_of_one_instant_becomes_a_message() -> None:
     assert node.sent == {}
 
 
-@pytest.mark.usefixtures("stereo_installed")
 def test_the_message_is_ros_2_s() -> None:
     """By Jazzy's own definition: it has these fields, and they travel as CDR."""
     node = FakeNode()
@@ -129,7 +110,6 @@ def test_the_message_is_ros_2_s() -> None:
     assert (back.image.height, back.valid_window.width) == (48, 64)
 
 
-@pytest.mark.usefixtures("stereo_installed")
 def test_nobody_listens_nothing_is_asked_for() -> None:
     """No views are drawn for it, and nothing is made."""
     node = FakeNode(readers=0)
@@ -139,13 +119,3 @@ def test_nobody_listens_nothing_is_asked_for() -> None:
     assert topics.wanted_views("head/left") == set()
     assert stereo_pairs(cameras) == {"head": ("head/left", "head/right")}
     assert stereo_pairs((AgentSpec(name="eye"),)) == {}
-
-
-def test_without_stereo_msgs_there_is_no_topic(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As with the ROS 2 packages of PyPI."""
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    node = FakeNode()
-    topics = DisparityTopics(node)  # type: ignore[arg-type]  # all that it uses of a node
-    topics.set_agents(HEAD.camera_specs)
-    assert node.sent == {}
-    assert topics.wanted_views("head/left") == set()

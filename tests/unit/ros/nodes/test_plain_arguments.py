@@ -58,6 +58,7 @@ def test_what_only_ros_reads_is_left_to_it(words: list[str]) -> None:
         ("mode:=slow", UnknownName),
         ("agent.views:=[1]", InvalidRequest),
         ("scene:=[", InvalidRequest),
+        ("use_sim_time:=true", InvalidRequest),
     ],
 )
 def test_what_ros_would_refuse_is_refused(assignment: str, error: type[Exception]) -> None:
