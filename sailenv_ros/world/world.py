@@ -11,6 +11,8 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.types.baked_light import BakedLight
@@ -18,17 +20,28 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.joints import JointState
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.rigid_body import RigidBody
+from sailenv_ros.types.validation import vector
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover_motion import MoverCommand
 from sailenv_ros.world.world_state import WorldState
 
-__all__ = ["World"]
+__all__ = ["MAX_VELOCITY_M_S", "MAX_VELOCITY_RAD_S", "World"]
+
+MAX_VELOCITY_M_S = 1e3
+MAX_VELOCITY_RAD_S = 1.7e3
+
+NOT_MOVING = (0.0, 0.0, 0.0)
 
 
 class World(WorldState):
     """The live state of one scene, and all that changes it; see `WorldState` for its parameters."""
+
+    @property
+    def added_ids(self) -> tuple[int, ...]:
+        """Ids of the objects that were spawned since the start."""
+        return self._first.added()
 
     def enter(self, instance_id: int, *, seed: int) -> None:
         """Put an object that waits where it stands at the start; its behaviours begin now."""
@@ -160,6 +173,50 @@ class World(WorldState):
                 if id_ == instance_id or body in carried:
                     self._bodies.reset_motion_history(id_)
         self._snapshot = self._states = None
+
+    def set_velocity(
+        self, instance_id: int, linear_m_s: Sequence[float], angular_rad_s: Sequence[float]
+    ) -> None:
+        """Let an object move on at a velocity.
+
+        Parameters
+        ----------
+        instance_id : int
+        linear_m_s : (3,) sequence of float
+            Of its own frame's origin, world axes; each within `MAX_VELOCITY_M_S`.
+        angular_rad_s : (3,) sequence of float
+            World axes; each within `MAX_VELOCITY_RAD_S`.
+
+        Raises
+        ------
+        InvalidRequest
+            If it is static or on a joint, or a velocity is not accepted.
+        """
+        moved = self.body(instance_id)
+        linear = vector("linear velocity", linear_m_s, limit=MAX_VELOCITY_M_S)
+        angular = vector("angular velocity", angular_rad_s, limit=MAX_VELOCITY_RAD_S)
+        if moved.placement.static:
+            accepted = "one that is not static: only those have a velocity"
+            raise InvalidRequest("object", moved.placement.name, accepted)
+        moved.require_free()
+        placement = moved.placement
+        offset = np.multiply(placement.asset.centre_of_mass_m, placement.scale)
+        arm = moved.world_from_body()[:3, :3] @ offset
+        centre = np.asarray(linear) + np.cross(angular, arm)
+        moved.wake()
+        self._client.resetBaseVelocity(moved.bullet_id, centre.tolist(), angular)
+        self._snapshot = self._states = None
+
+    def put_back(self) -> None:
+        """Put what was there at the start, and still is, where it was then and as it moved."""
+        for id_, pose, placement in self._first.moved():
+            self.put_body(id_, pose, teleport=True)
+            if placement.linear_velocity != NOT_MOVING or placement.angular_velocity != NOT_MOVING:
+                self._client.resetBaseVelocity(
+                    self.body(id_).bullet_id, placement.linear_velocity, placement.angular_velocity
+                )
+        for id_, position in self._first.turned():
+            self.set_joint(id_, position)
 
     def joint(self, instance_id: int) -> JointState | None:
         """Return the state of an object's joint; None where it has none that moves."""

@@ -1,8 +1,4 @@
-"""The live state of a world, as it is read; what changes it is in `world`.
-
-Time is a count of steps; there is no wall clock and no global random state here, so the same scene,
-seed and calls give the same bytes.
-"""
+"""The live state of a world, as it is read; what changes it is in `world`."""
 
 from __future__ import annotations
 
@@ -24,6 +20,7 @@ from sailenv_ros.world.body_table import BodyTable
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.contact_log import ContactLog
 from sailenv_ros.world.contents_maker import ContentsMaker
+from sailenv_ros.world.first_states import FirstStates
 from sailenv_ros.world.inactive_objects import InactiveObjects
 from sailenv_ros.world.look_at_solver import LookAtSolver
 from sailenv_ros.world.mover import Mover
@@ -110,6 +107,7 @@ class WorldState:
             self._bodies.others = lambda: self._stands.bodies
             begin_at_rest(self._client, self.bodies, settled=settled)
             self._stands.enter()
+            self._first = FirstStates(self._bodies)
         except BaseException:
             self.close()
             raise

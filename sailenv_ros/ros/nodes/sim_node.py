@@ -12,7 +12,7 @@ import contextlib
 import logging
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
@@ -41,6 +41,7 @@ from sailenv_ros.ros.nodes.parameters import declare_parameters
 from sailenv_ros.ros.nodes.requests import OperationRunner
 from sailenv_ros.ros.nodes.running import exit_status, refusing
 from sailenv_ros.ros.nodes.services import SimulatorServices
+from sailenv_ros.ros.nodes.simulation_interfaces import SimulationInterfaces
 from sailenv_ros.ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.memory import keep_freed_memory
@@ -74,6 +75,8 @@ class SimNode:
     hosted : Hosted
         The simulation with its servers; owned from now on.
     publish_clock : bool
+    quit_process : callable
+        Asks the process to end.
     """
 
     def __init__(
@@ -83,6 +86,7 @@ class SimNode:
         hosted: Hosted,
         *,
         publish_clock: bool,
+        quit_process: Callable[[], None],
     ) -> None:
         self._node = node
         self._executor = executor
@@ -104,6 +108,7 @@ class SimNode:
         self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
         agent = "" if hosted.parameters.agent is None else hosted.parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
+        self._interfaces = SimulationInterfaces(node, simulation, quit_process)
         self._spinning = ExecutorThread(executor)
         self._capture_server = CaptureServer(
             simulation,
@@ -126,11 +131,13 @@ class SimNode:
         self._joints.begin(self._simulation)
         self._executor.add_node(self._node)
         self._spinning.start()
+        self._interfaces.start()
 
     def close(self, timeout_s: float) -> bool:
         """End everything but the node; False if the simulation did not end in time."""
         self._hosted.close_servers()
         self._capture_server.close()
+        self._interfaces.close()
         self._spinning.stop(0.5)
         self._announcements.end()
         self._contacts.end()
@@ -215,7 +222,9 @@ def _run_node(
                 return 0
             hosted = Hosted(simulation, parameters)
         executor = SingleThreadedExecutor(context=context)
-        sim_node = SimNode(node, executor, hosted, publish_clock=publish_clock)
+        sim_node = SimNode(
+            node, executor, hosted, publish_clock=publish_clock, quit_process=stop.set
+        )
         try:
             sim_node.start()
             _greet(node, hosted.simulation.info, transport, hosted.viewer_url)

@@ -1,0 +1,131 @@
+"""The node that offers the standard interfaces, beside that of the simulator.
+
+A node and a thread of its own: the simulator's frames do not wait for one more service.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import simulation_interfaces.action as actions
+from rclpy.action.server import ActionServer
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from simulation_interfaces.srv import GetSimulatorFeatures
+
+from sailenv_ros.ros.executor_thread import ExecutorThread
+from sailenv_ros.ros.nodes.requests import OperationRunner
+from sailenv_ros.ros.nodes.simulation_interfaces.clock import accept_cancel, simulate_steps
+from sailenv_ros.ros.nodes.simulation_interfaces.desk import Desk
+from sailenv_ros.ros.nodes.simulation_interfaces.results import answered
+from sailenv_ros.ros.nodes.simulation_interfaces.table import ACTION, ROWS, Row, features_of
+from sailenv_ros.simulation import Simulation
+
+__all__ = ["NODE_NAME", "SimulationInterfaces", "service_name"]
+
+NODE_NAME = "simulation_interfaces"
+
+QUITS_AFTER_S = 0.5
+"""Time from the answer to a request to quit until the end begins [s]."""
+
+FEEDBACK_DEPTH = 240
+"""Feedback that is kept for a slow client: of a second of steps."""
+
+
+def service_name(type_name: str) -> str:
+    """Return the name of the service of a type: ``GetEntities`` → ``get_entities``."""
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", type_name).lower()
+
+
+class SimulationInterfaces:
+    """Offers all services and actions that the installed `simulation_interfaces` have.
+
+    Parameters
+    ----------
+    beside : Node
+        The simulator's node, whose namespace and context are taken.
+    simulation : Simulation
+    quit_process : callable
+        Asks the process to end.
+    """
+
+    def __init__(
+        self, beside: Node, simulation: Simulation, quit_process: Callable[[], None]
+    ) -> None:
+        self._node = Node(
+            NODE_NAME,
+            namespace=beside.get_namespace(),
+            context=beside.context,
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        self._executor = SingleThreadedExecutor(context=beside.context)
+        runner = OperationRunner(simulation, self._executor)
+        self._desk = Desk(
+            simulation,
+            runner,
+            # Nothing tells when an answer has arrived, and the end of a process takes it along.
+            quit_soon=lambda: self._node.create_timer(QUITS_AFTER_S, quit_process),
+        )
+        group = ReentrantCallbackGroup()
+        offered: list[str] = []
+        for row in ROWS:
+            if row.type is not None:
+                self._serve(row.type, row.type_name, self._handler(row), group)
+                offered.append(row.type_name)
+        self._actions = []
+        action = getattr(actions, ACTION, None)
+        if action is not None:
+            offered.append(ACTION)
+            server = ActionServer(
+                self._node,
+                action,
+                service_name(ACTION),
+                execute_callback=partial(_simulate, self._desk, action),
+                cancel_callback=accept_cancel,
+                feedback_pub_qos_profile=QoSProfile(depth=FEEDBACK_DEPTH),
+                callback_group=group,
+            )
+            self._actions.append(server)
+        features = features_of(tuple(offered))
+
+        async def tell(request: Any, response: Any) -> None:
+            response.features = features
+
+        self._serve(GetSimulatorFeatures, "GetSimulatorFeatures", tell, group)
+        self._spinning = ExecutorThread(self._executor, NODE_NAME)
+
+    def start(self) -> None:
+        """Begin to serve."""
+        self._executor.add_node(self._node)
+        self._spinning.start()
+
+    def close(self) -> None:
+        """End."""
+        self._spinning.stop(0.5)
+        for server in self._actions:
+            server.destroy()
+        self._executor.shutdown(0.0)
+        self._node.destroy_node()
+
+    def _serve(self, kind: Any, type_name: str, handler: Any, group: Any) -> None:
+        name = service_name(type_name)
+        self._node.create_service(kind, name, answered(handler), callback_group=group)
+
+    def _handler(self, row: Row) -> Callable[[Any, Any], Any]:
+        async def handle(request: Any, response: Any) -> None:
+            if row.needs_world:
+                self._desk.require_world()
+            await row.handler(self._desk, request, response)
+
+        return handle
+
+
+async def _simulate(desk: Desk, action: Any, goal: Any) -> Any:
+    return await simulate_steps(desk, goal, action)

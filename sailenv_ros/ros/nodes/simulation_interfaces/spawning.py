@@ -1,0 +1,146 @@
+"""Handlers that spawn entities: names, namespaces, resources, places."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import quote, unquote
+
+from rclpy.exceptions import InvalidNamespaceException
+from rclpy.validate_namespace import validate_namespace
+from simulation_interfaces.msg import Result
+from simulation_interfaces.srv import SpawnEntity
+
+from sailenv_ros.errors import AssetError, InvalidEntry, NameTaken, SailenvError, UnknownName
+from sailenv_ros.ros.nodes.simulation_interfaces.desk import Desk
+from sailenv_ros.ros.nodes.simulation_interfaces.frames import pose_in_world
+from sailenv_ros.ros.nodes.simulation_interfaces.results import Refusal, code_of, refused
+from sailenv_ros.ros.nodes.simulation_interfaces.versions import resource_of
+from sailenv_ros.scene.entries import free_name, read_document
+from sailenv_ros.simulation.operations.entity_operations import EntityOperations
+
+__all__ = ["ASSET_SCHEME", "asset_uri", "spawn_entities", "spawn_entity"]
+
+ASSET_SCHEME = "sailenv://asset/"
+"""Begin of the URI of an asset of the catalogue."""
+
+FORMAT = "sailenv"
+"""Name of the format of `resource_string`: an object as a scene file describes it."""
+
+MOST_CHARACTERS = 64 * 1024
+
+Code = SpawnEntity.Response
+INVALID_POSE = getattr(Code, "INVALID_POSE", Result.RESULT_OPERATION_FAILED)
+
+
+def asset_uri(name: str) -> str:
+    """Return the URI of an asset."""
+    return ASSET_SCHEME + quote(name)
+
+
+async def spawn_entity(desk: Desk, request: Any, response: Any) -> None:
+    """Spawn one entity."""
+    response.entity_name = await _spawn(desk, request)
+
+
+async def spawn_entities(desk: Desk, request: Any, response: Any) -> None:
+    """Spawn several, each as if it were alone."""
+    from simulation_interfaces.msg import SpawnResult  # which older versions lack
+
+    for one in request.spawn_requests:
+        told = SpawnResult()
+        try:
+            told.entity_name = await _spawn(desk, one)
+            told.result.result = Result.RESULT_OK
+        except SailenvError as problem:
+            told.result = Result(result=code_of(problem), error_message=str(problem))
+        response.results.append(told)
+    failed = [one for one in response.results if one.result.result != Result.RESULT_OK]
+    if failed:
+        response.result.result = response.ENTITIES_SPAWN_FAILED
+        response.result.error_message = (
+            f"{len(failed)} of {len(response.results)} could not be spawned: see results"
+        )
+
+
+async def _spawn(desk: Desk, request: Any) -> str:
+    entry = _entry(*resource_of(request, "entity_resource"))
+    name = _name(desk, request, str(entry.get("name") or ""), str(entry.get("asset")))
+    pose = await pose_in_world(
+        desk, request.initial_pose.header.frame_id, request.initial_pose.pose, INVALID_POSE
+    )
+    # Slashes separate namespaces in names of entities; the scene's own names have none.
+    own = {one.name for one in desk.info.instances}
+    plain = name.replace("/", ".")
+    plain = free_name(plain, own) if plain in own else plain
+    try:
+        number = await desk.do(EntityOperations.spawn_entry, {**entry, "name": plain}, pose)
+    except InvalidEntry as problem:
+        wrong_name = any(field == "name" for field, _ in problem.diagnostics)
+        code = Code.NAME_INVALID if wrong_name else Code.RESOURCE_PARSE_ERROR
+        raise Refusal(code, str(problem)) from None
+    except SailenvError as problem:
+        codes: dict[type[SailenvError], int] = {
+            NameTaken: Code.NAME_NOT_UNIQUE,
+            UnknownName: Result.RESULT_NOT_FOUND,
+            AssetError: Code.MISSING_ASSETS,
+        }
+        raise refused(problem, codes) from None
+    if plain != name:
+        desk.notes.names[number] = name
+    return name
+
+
+def _name(desk: Desk, request: Any, name_in_resource: str, asset: str) -> str:
+    """Return the name with its namespace that the entity shall have."""
+    space = request.entity_namespace.strip("/")
+    if space:
+        try:
+            validate_namespace(f"/{space}")
+        except InvalidNamespaceException as problem:
+            raise Refusal(Code.NAMESPACE_INVALID, " ".join(str(problem).split())) from None
+    name = request.name or name_in_resource
+    if "/" in name:
+        sentence = f"name must have no '/', which separates namespaces, got {name!r}"
+        raise Refusal(Code.NAME_INVALID, sentence)
+    prefix = f"{space}/" if space else ""
+    taken = desk.ids
+    if name and prefix + name not in taken:
+        return prefix + name
+    if not request.allow_renaming:
+        if not name:
+            sentence = "name must not be empty, unless allow_renaming is true"
+            raise Refusal(Code.NAME_INVALID, sentence)
+        sentence = f"an entity {prefix + name!r} is there already; see allow_renaming"
+        raise Refusal(Code.NAME_NOT_UNIQUE, sentence)
+    base = name or asset.replace(":", "_")
+    there = {one.removeprefix(prefix) for one in taken if one.startswith(prefix)}
+    return prefix + free_name(base, there)
+
+
+def _entry(uri: str, text: str) -> Mapping[str, Any]:
+    """Return an object with keys of a scene file."""
+    if uri:
+        return {"asset": _asset(uri)}
+    if not text:
+        raise Refusal(Code.NO_RESOURCE, "a uri or a resource_string must be given")
+    if len(text) > MOST_CHARACTERS:
+        sentence = f"resource_string must have at most {MOST_CHARACTERS} characters"
+        raise Refusal(Code.RESOURCE_PARSE_ERROR, sentence)
+    try:
+        entry = read_document(text)
+    except SailenvError as problem:
+        raise refused(problem, {SailenvError: Code.RESOURCE_PARSE_ERROR}) from None
+    if not isinstance(entry, Mapping) or "asset" not in entry:
+        accepted = "an object as in a scene file, with its asset, such as {asset: cube, mass: 2}"
+        raise Refusal(Code.UNSUPPORTED_FORMAT, f"resource_string must be {accepted}")
+    return entry
+
+
+def _asset(uri: str) -> str:
+    if uri.startswith(ASSET_SCHEME):
+        return unquote(uri.removeprefix(ASSET_SCHEME))
+    if "://" in uri or "/" in uri:
+        sentence = f"uri must be {ASSET_SCHEME}NAME or a NAME of the catalogue, got {uri!r}"
+        raise Refusal(Code.UNSUPPORTED_FORMAT, sentence)
+    return uri
