@@ -1,6 +1,6 @@
 """Extended regular expressions of POSIX (IEEE 1003.1, chapter 9.4), matched in linear time.
 
-Patterns come from strangers: an automaton of limited size reads each character once, where a
+Patterns are untrusted: an automaton of limited size reads each character once, where a
 matcher that tries one way after another may need years. Without back-references, collating
 symbols and equivalence classes.
 """

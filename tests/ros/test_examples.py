@@ -159,3 +159,16 @@ def test_a_rig_sees_one_instant(tmp_path: Path) -> None:
     assert len(shares) == 10
     assert min(shares) > 40.0
     assert max(shares) < 100.0
+
+
+def test_the_standard_interfaces_repeat_a_fall() -> None:
+    """From another process, twice to the same byte; the simulator ends when it is asked to."""
+    out = run("19_standard_interfaces")
+    heights = re.findall(r"the ball is at z = ([\d.]+) m", out)
+    assert len(set(heights)) == 1
+    # Half a second of free fall from 3 m in steps of 1/240 s, each of which sets the speed first.
+    fallen = 9.81 * 120 * 121 / 2 / 240**2
+    assert float(heights[0]) == pytest.approx(3.0 - fallen, abs=1e-9)
+    assert "equal bytes: True" in out
+    assert "left after the reset: []" in out
+    assert "ended with status 0" in out

@@ -26,10 +26,11 @@ from simulation_interfaces.msg import (
 )
 
 from sailenv_msgs_py.transforms import pose_from_msg
-from sailenv_ros.ros.nodes.simulation_interfaces.server import service_name
 from sailenv_ros.ros.nodes.simulation_interfaces.table import ROWS
 from tests.support.ros_probe import DISCOVERY_S, RELIABLE, Probe
 from tests.support.sim_node_process import NodeProcess
+from tests.support.standard_client import StandardClient, set_resource, world
+from tests.support.standard_storm import storm
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
@@ -48,60 +49,16 @@ def node() -> Iterator[NodeProcess]:
         yield node
 
 
-class Standard:
-    """Calls services by the names of their types."""
-
-    def __init__(self, probe: Probe) -> None:
-        self._probe = probe
-
-    def __call__(self, kind: str, code: int = OK, **fields: Any) -> Any:
-        """Call one and expect a code."""
-        type_ = getattr(srv, kind)
-        answer = self._probe.call(type_, service_name(kind), type_.Request(**fields))
-        if kind != "GetSimulatorFeatures":
-            assert answer.result.result == code, (answer.result, kind)
-            assert code == OK or answer.result.error_message
-        return answer
-
-    def spawn(self, name: str, asset: str = "cube", code: int = OK, **fields: Any) -> Any:
-        at = fields.pop("at", (40.0, 0.0, 50.0))
-        request = srv.SpawnEntity.Request(name=name, **fields)
-        set_uri(request, asset)
-        place = request.initial_pose.pose.position
-        place.x, place.y, place.z = at
-        answer = self._probe.call(srv.SpawnEntity, "spawn_entity", request)
-        assert answer.result.result == code, answer.result
-        return answer.entity_name
-
-    def state(self, entity: str) -> Any:
-        return self("GetEntityState", entity=entity).state
-
-    def entities(self, **filters: Any) -> list[str]:
-        return list(self("GetEntities", filters=EntityFilters(**filters)).entities)
-
-
-def set_uri(request: Any, asset: str) -> None:
-    """Name the asset as either version of the definitions has it."""
-    getattr(request, "entity_resource", request).uri = asset and f"sailenv://asset/{asset}"
-
-
 @pytest.fixture
-def call(probe: Probe) -> Standard:
+def call(probe: Probe) -> StandardClient:
     """A client; the scene stands at its beginning and is paused."""
-    client = Standard(probe)
+    client = StandardClient(probe)
     client("LoadWorld", **world("optical"))
-    client("SetSimulationState", state=SimulationState(state=SimulationState.STATE_PAUSED))
+    client.set_to(SimulationState.STATE_PAUSED)
     return client
 
 
-def world(scene: str) -> dict[str, Any]:
-    """Name a world as either version of the definitions has it."""
-    uri = f"sailenv://scene/{scene}"
-    flat = hasattr(srv.LoadWorld.Request, "uri")
-    return {"uri": uri} if flat else {"world_resource": Resource(uri=uri)}
-
-
-def test_everything_is_offered_and_announced(call: Standard, probe: Probe) -> None:
+def test_everything_is_offered_and_announced(call: StandardClient) -> None:
     """22 services and the action; each feature is a constant, none of time alone."""
     kinds = {row.type_name for row in ROWS} | {"GetSimulatorFeatures"}
     assert len(kinds) == 22
@@ -116,13 +73,10 @@ def test_everything_is_offered_and_announced(call: Standard, probe: Probe) -> No
     }
     assert "sailenv" in features.spawn_formats
     call("ResetSimulation", UNSUPPORTED, scope=srv.ResetSimulation.Request.SCOPE_TIME)
-    text = {"resource_string": "version: 1"}
-    flat = hasattr(srv.LoadWorld.Request, "uri")
-    call("LoadWorld", UNSUPPORTED, **(text if flat else {"world_resource": Resource(**text)}))
-    del probe
+    call("LoadWorld", UNSUPPORTED, **world(text="version: 1"))
 
 
-def test_entities_come_and_go(call: Standard) -> None:
+def test_entities_come_and_go(call: StandardClient) -> None:
     """Names, namespaces, renaming; an old name is free again after it was deleted."""
     code = srv.SpawnEntity.Response
     assert call.spawn("box") == "box"
@@ -145,14 +99,14 @@ def test_entities_come_and_go(call: Standard) -> None:
     assert "other" not in call.entities()
 
 
-def test_an_object_of_a_scene_file_is_spawned_by_its_text(call: Standard, probe: Probe) -> None:
+def test_an_object_of_a_scene_file_is_spawned_by_its_text(call: StandardClient) -> None:
     """With its mass and its colour; what is none is refused, whatever it asks for."""
     code = srv.SpawnEntity.Response
 
     def spawn(text: str, name: str = "") -> Any:
         request = srv.SpawnEntity.Request(name=name)
-        getattr(request, "entity_resource", request).resource_string = text
-        return probe.call(srv.SpawnEntity, "spawn_entity", request)
+        set_resource(request, text=text)
+        return call.send("SpawnEntity", request, None)
 
     answer = spawn("{name: heavy, asset: cube, mass: 7, colour: '#ff0000', static: true}")
     assert (answer.result.result, answer.entity_name) == (OK, "heavy")
@@ -165,32 +119,31 @@ def test_an_object_of_a_scene_file_is_spawned_by_its_text(call: Standard, probe:
     assert spawn(hostile, "x").result.result == code.RESOURCE_PARSE_ERROR
 
 
-def test_several_are_spawned_in_one_call(call: Standard, probe: Probe) -> None:
+def test_several_are_spawned_in_one_call(call: StandardClient) -> None:
     """Each for itself: those that can be are there, the others have their codes."""
     wanted = []
     for name, asset in (("one", "cube"), ("one", "cube"), ("two", "sphere")):
         wanted.append(SpawnEntity(name=name, entity_resource=Resource(uri=asset)))
         wanted[-1].initial_pose.pose.position.z = 10.0 * len(wanted)
-    request = srv.SpawnEntities.Request(spawn_requests=wanted)
-    answer = probe.call(srv.SpawnEntities, "spawn_entities", request)
-    assert answer.result.result == srv.SpawnEntities.Response.ENTITIES_SPAWN_FAILED
+    failed = srv.SpawnEntities.Response.ENTITIES_SPAWN_FAILED
+    answer = call("SpawnEntities", failed, spawn_requests=wanted)
     codes = [one.result.result for one in answer.results]
     assert codes == [OK, srv.SpawnEntity.Response.NAME_NOT_UNIQUE, OK]
     assert {"one", "two"} <= set(call.entities())
 
 
-def test_states_are_set_and_told(call: Standard, probe: Probe) -> None:
+def test_states_are_set_and_told(call: StandardClient) -> None:
     """Pose and velocities of the frame's origin, also in another entity's frame."""
     call.spawn("carrier", at=(40.0, 0.0, 50.0))
     call.spawn("thing", at=(42.0, 0.0, 60.0))
     turned = call.state("carrier")
     turned.pose.orientation.z = turned.pose.orientation.w = math.sqrt(0.5)
-    set_state(probe, "carrier", turned)
+    call.set_state("carrier", turned)
     state = call.state("thing")
     state.header.frame_id = "carrier"
     state.pose.position.x, state.pose.position.y, state.pose.position.z = 1.0, 0.0, 5.0
     state.twist.linear.x, state.twist.angular.z = 2.0, 0.5
-    set_state(probe, "thing", state)
+    call.set_state("thing", state)
     told = call.state("thing")
     place, speed = told.pose.position, told.twist.linear
     assert (place.x, place.y, place.z) == pytest.approx((40.0, 1.0, 55.0))
@@ -204,36 +157,24 @@ def test_states_are_set_and_told(call: Standard, probe: Probe) -> None:
     both = call("GetEntitiesStates", filters=EntityFilters(filter="^(carrier|thing)$"))
     assert list(both.entities) == ["carrier", "thing"]
     assert both.states[1] == moved
+    invalid = srv.SetEntityState.Response.INVALID_POSE
     wrong = call.state("thing")
     wrong.pose.orientation.w = 3.0
-    assert set_state(probe, "thing", wrong, None) == srv.SetEntityState.Response.INVALID_POSE
+    call.set_state("thing", wrong, invalid)
     wrong = call.state("thing")
     wrong.header.frame_id = "nowhere"
-    assert set_state(probe, "thing", wrong, None) == srv.SetEntityState.Response.INVALID_POSE
+    call.set_state("thing", wrong, invalid)
     wrong = call.state("thing")
     wrong.acceleration.linear.x = 1.0
-    assert set_state(probe, "thing", wrong, None) == UNSUPPORTED
+    call.set_state("thing", wrong, UNSUPPORTED)
     floor = call.state("floor")
     floor.twist.linear.x = 1.0
-    assert set_state(probe, "floor", floor, None) == FAILED
+    call.set_state("floor", floor, FAILED)
     call("GetEntityState", NOT_FOUND, entity="nobody")
     assert call.state("thing") == moved
 
 
-def set_state(probe: Probe, entity: str, state: Any, code: int | None = OK) -> int:
-    """Set all of a state, or all that can be, as either version of the definitions has it."""
-    request = srv.SetEntityState.Request(entity=entity, state=state)
-    for flag in ("set_pose", "set_twist"):
-        if hasattr(request, flag):
-            setattr(request, flag, True)
-    if hasattr(request, "set_acceleration"):
-        request.set_acceleration = state.acceleration.linear.x != 0.0
-    answer = probe.call(srv.SetEntityState, "set_entity_state", request).result
-    assert code is None or answer.result == code, answer
-    return int(answer.result)
-
-
-def test_information_can_be_filtered_by(call: Standard) -> None:
+def test_information_can_be_filtered_by(call: StandardClient) -> None:
     """Categories and tags, any or all; those that were set replace those that follow."""
     call.spawn("box")
     static = EntityCategory(category=EntityCategory.CATEGORY_STATIC_OBJECT)
@@ -258,7 +199,7 @@ def test_information_can_be_filtered_by(call: Standard) -> None:
     call("GetEntities", FAILED, filters=EntityFilters(tags=TagsFilter(filter_mode=7)))
 
 
-def test_bounds_are_those_of_collision_shapes(call: Standard) -> None:
+def test_bounds_are_those_of_collision_shapes(call: StandardClient) -> None:
     """A cube of 1 m, its box in its own frame, and regions that touch it or do not."""
     call.spawn("box", at=(40.0, 0.0, 50.0))
     bounds = call("GetEntityBounds", entity="box").bounds
@@ -284,7 +225,7 @@ def test_bounds_are_those_of_collision_shapes(call: Standard) -> None:
     call("GetEntities", FAILED, filters=EntityFilters(bounds=one))
 
 
-def test_the_catalogue_can_be_spawned(call: Standard) -> None:
+def test_the_catalogue_can_be_spawned(call: StandardClient) -> None:
     """Each spawnable has a URI that spawns it and the box that it fills."""
     answer = call("GetSpawnables", sources=["https://example.org"])
     assert "https://example.org" in answer.result.error_message
@@ -294,7 +235,7 @@ def test_the_catalogue_can_be_spawned(call: Standard) -> None:
     assert len(uris) == len(answer.spawnables) > 3
 
 
-def test_named_poses_stay_where_they_are(call: Standard) -> None:
+def test_named_poses_stay_where_they_are(call: StandardClient) -> None:
     """Viewpoints with what is free around them; the same ones each time."""
     poses = call("GetNamedPoses").poses
     assert poses == call("GetNamedPoses").poses
@@ -310,37 +251,29 @@ def test_named_poses_stay_where_they_are(call: Standard) -> None:
 # -- time ----------------------------------------------------------------------------------
 
 
-def set_to(call: Standard, state: int, code: int = OK) -> None:
-    call("SetSimulationState", code, state=SimulationState(state=state))
-
-
-def state_of(call: Standard) -> int:
-    return int(call("GetSimulationState").state.state)
-
-
-def test_a_lockstep_simulation_is_paused_or_stopped(call: Standard) -> None:
+def test_a_lockstep_simulation_is_paused_or_stopped(call: StandardClient) -> None:
     """It is stepped while paused; to stop it resets it; it cannot play."""
     code = srv.SetSimulationState.Response
-    assert state_of(call) == SimulationState.STATE_PAUSED
+    assert call.simulation_state == SimulationState.STATE_PAUSED
     call.spawn("box")
     call("StepSimulation")
     call("StepSimulation", steps=23)
     assert call.state("box").header.stamp.nanosec == 100_000_000
     call("StepSimulation", FAILED, steps=0)
-    set_to(call, SimulationState.STATE_PAUSED, code.ALREADY_IN_TARGET_STATE)
-    set_to(call, SimulationState.STATE_PLAYING, code.STATE_TRANSITION_ERROR)
-    set_to(call, SimulationState.STATE_NO_WORLD, code.INCORRECT_TRANSITION)
-    set_to(call, SimulationState.STATE_STOPPED)
-    assert state_of(call) == SimulationState.STATE_STOPPED
+    call.set_to(SimulationState.STATE_PAUSED, code.ALREADY_IN_TARGET_STATE)
+    call.set_to(SimulationState.STATE_PLAYING, code.STATE_TRANSITION_ERROR)
+    call.set_to(SimulationState.STATE_NO_WORLD, code.INCORRECT_TRANSITION)
+    call.set_to(SimulationState.STATE_STOPPED)
+    assert call.simulation_state == SimulationState.STATE_STOPPED
     assert "box" not in call.entities()
     assert call.state("floor").header.stamp.nanosec == 0
     call("StepSimulation", FAILED)
-    set_to(call, SimulationState.STATE_STOPPED, code.ALREADY_IN_TARGET_STATE)
-    set_to(call, SimulationState.STATE_PAUSED)
+    call.set_to(SimulationState.STATE_STOPPED, code.ALREADY_IN_TARGET_STATE)
+    call.set_to(SimulationState.STATE_PAUSED)
     call("StepSimulation")
 
 
-def test_a_reset_has_scopes(call: Standard) -> None:
+def test_a_reset_has_scopes(call: StandardClient) -> None:
     """State and spawned things each for themselves, all together; old names are free again."""
     scope = srv.ResetSimulation.Request
     call.spawn("box", at=(40.0, 0.0, 50.0))
@@ -368,7 +301,7 @@ def test_a_reset_has_scopes(call: Standard) -> None:
         assert call.state("box").header.stamp.nanosec == 0
 
 
-def test_steps_tell_how_far_they_are(call: Standard, probe: Probe) -> None:
+def test_steps_tell_how_far_they_are(call: StandardClient, probe: Probe) -> None:
     """Feedback after each step; a cancelled action ends between two; a stopped one is refused."""
     client = ActionClient(
         probe.node, SimulateSteps, "simulate_steps", feedback_sub_qos_profile=RELIABLE
@@ -406,12 +339,12 @@ def test_steps_tell_how_far_they_are(call: Standard, probe: Probe) -> None:
     assert told.result.result.result == FAILED
     assert "of 1000000 steps" in told.result.result.error_message
     assert ended(begun(0)).result.result.result == FAILED
-    set_to(call, SimulationState.STATE_STOPPED)
+    call.set_to(SimulationState.STATE_STOPPED)
     assert ended(begun(1)).result.result.result == FAILED
     client.destroy()
 
 
-def test_worlds_are_loaded_and_unloaded(call: Standard) -> None:
+def test_worlds_are_loaded_and_unloaded(call: StandardClient) -> None:
     """Scenes and generated rooms; without a world nothing but worlds can be asked for."""
     code = srv.LoadWorld.Response
     worlds = call("GetAvailableWorlds").worlds
@@ -423,27 +356,30 @@ def test_worlds_are_loaded_and_unloaded(call: Standard) -> None:
     answer = call("LoadWorld", **world("solid_benchmark"))
     assert answer.world == call("GetCurrentWorld").world
     assert (answer.world.name, answer.world.description) == ("solid_benchmark", "Solid benchmark")
-    assert state_of(call) == SimulationState.STATE_STOPPED
+    assert call.simulation_state == SimulationState.STATE_STOPPED
     call("LoadWorld", NOT_FOUND, **world("no_such_scene"))
     call("LoadWorld", NOT_FOUND, **world("generated:castle:1"))
-    call("LoadWorld", code.UNSUPPORTED_FORMAT, **other_uri("https://example.org/x.sdf"))
+    call("LoadWorld", code.UNSUPPORTED_FORMAT, **world(uri="https://example.org/x.sdf"))
     call("LoadWorld", code.NO_RESOURCE)
     assert call("GetCurrentWorld").world.name == "solid_benchmark"
     call("UnloadWorld")
     call("UnloadWorld", srv.UnloadWorld.Response.NO_WORLD_LOADED)
     call("GetCurrentWorld", srv.GetCurrentWorld.Response.NO_WORLD_LOADED)
-    assert state_of(call) == SimulationState.STATE_NO_WORLD
+    assert call.simulation_state == SimulationState.STATE_NO_WORLD
     for kind in ("GetEntities", "StepSimulation", "ResetSimulation", "GetNamedPoses"):
         call(kind, STATE)
-    set_to(call, SimulationState.STATE_PLAYING, STATE)
+    call.set_to(SimulationState.STATE_PLAYING, STATE)
     assert call("GetSpawnables").spawnables
-    call("LoadWorld", **other_uri("optical"))
+    call("LoadWorld", **world(uri="optical"))
     assert "floor" in call.entities()
 
 
-def other_uri(uri: str) -> dict[str, Any]:
-    flat = hasattr(srv.LoadWorld.Request, "uri")
-    return {"uri": uri} if flat else {"world_resource": Resource(uri=uri)}
+def test_random_calls_are_answered_as_a_model_says_and_twice_alike(call: StandardClient) -> None:
+    """Every code, name and time; the bytes of all answers are those of a second run."""
+    first, counts = storm(call, seed=3, calls=200)
+    again, _ = storm(call, seed=3, calls=200)
+    assert first == again
+    assert len(counts) > 18
 
 
 def test_time_that_runs_by_itself_is_played_and_paused_and_quit() -> None:
@@ -452,17 +388,17 @@ def test_time_that_runs_by_itself_is_played_and_paused_and_quit() -> None:
         NodeProcess("/playing", agent__width=64, agent__height=48) as node,
         Probe("/playing") as probe,
     ):
-        call = Standard(probe)
-        assert state_of(call) == SimulationState.STATE_PLAYING
+        call = StandardClient(probe)
+        assert call.simulation_state == SimulationState.STATE_PLAYING
         call("StepSimulation", FAILED)
-        set_to(call, SimulationState.STATE_PAUSED)
+        call.set_to(SimulationState.STATE_PAUSED)
         before = call.state("floor").header.stamp
         call("StepSimulation", steps=24)
         assert call.state("floor").header.stamp != before
-        set_to(call, SimulationState.STATE_STOPPED)
+        call.set_to(SimulationState.STATE_STOPPED)
         assert call.state("floor").header.stamp.nanosec == 0
-        set_to(call, SimulationState.STATE_PLAYING)
+        call.set_to(SimulationState.STATE_PLAYING)
         call("LoadWorld", NOT_FOUND, **world("no_such_scene"))
-        assert state_of(call) == SimulationState.STATE_PLAYING
-        set_to(call, SimulationState.STATE_QUITTING)
+        assert call.simulation_state == SimulationState.STATE_PLAYING
+        call.set_to(SimulationState.STATE_QUITTING)
         assert node.status() == 0

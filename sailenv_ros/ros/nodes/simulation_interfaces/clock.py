@@ -68,7 +68,7 @@ async def set_simulation_state(desk: Desk, request: Any, response: Any) -> None:
 
 
 async def reset_simulation(desk: Desk, request: Any, response: Any) -> None:
-    """Begin anew, or put back what was there, or remove what was spawned."""
+    """Begin again, or put back what was there, or remove what was spawned."""
     scope = request.scope
     if scope in (Scope.SCOPE_DEFAULT, EVERY_SCOPE, Scope.SCOPE_ALL):
         stopped = desk.notes.stopped

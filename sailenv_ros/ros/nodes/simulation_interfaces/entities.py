@@ -89,7 +89,7 @@ async def get_entity_info(desk: Desk, request: Any, response: Any) -> None:
 
 
 async def set_entity_info(desk: Desk, request: Any, response: Any) -> None:
-    """Replace category, description and tags of an entity, until the scene begins anew."""
+    """Replace category, description and tags of an entity, until the scene begins again."""
     number, info = desk.find(request.entity), request.info
     if info.category.category not in CATEGORIES:
         known = ", ".join(map(str, sorted(CATEGORIES)))

@@ -31,7 +31,7 @@ GENERATED_TAG = "generated"
 
 
 async def load_world(desk: Desk, request: Any, response: Any) -> None:
-    """Load a scene; it is stopped then. If it cannot be loaded, the present one goes on."""
+    """Load a scene; it is stopped then. If it cannot be loaded, the present one continues."""
     code = LoadWorld.Response
     uri, text = resource_of(request, "world_resource")
     if not uri:
