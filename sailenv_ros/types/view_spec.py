@@ -29,7 +29,7 @@ ViewDisplay: TypeAlias = Literal[
 ]
 """Display of a view as a picture; `pictures.colours` has a function for each."""
 
-ImageCodec: TypeAlias = Literal["jpeg", "png"]
+ImageCodec: TypeAlias = Literal["jpeg", "png", "inverse depth"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,9 +68,9 @@ class ViewSpec:
         How it is shown as a picture.
     color_topic : bool
         True if it has a topic `<view>/color` with that picture.
-    compressed_topic : {'jpeg', 'png'} or None
-        Codec of the topic `<view>/compressed`; None if there is no such topic. A picture may lose
-        something, labels may not.
+    compressed_topic : {'jpeg', 'png', 'inverse depth'} or None
+        Codec of the topic `compressed_name`; None if there is no such topic. A picture and a depth
+        may lose something, labels may not.
     png_per_unit : float or None
         Steps per unit of its 16-bit PNG files; None if files hold the values themselves, or the
         picture of values that are no integers.
@@ -97,6 +97,12 @@ class ViewSpec:
     validity_of: str = ""
     wide_dtype: np.dtype[Any] | None = None
     wide_encoding: str = ""
+
+    @property
+    def compressed_name(self) -> str:
+        """Name of its compressed topic, as image_transport's plugins expect it."""
+        kind = "compressedDepth" if self.compressed_topic == "inverse depth" else "compressed"
+        return f"{self.name}/{kind}"
 
     @property
     def dtypes(self) -> tuple[np.dtype[Any], ...]:

@@ -50,6 +50,7 @@ _SPECS = (
         source="annotation",
         by_default=True,
         color_topic=True,
+        compressed_topic="inverse depth",
         png_per_unit=1000.0,
     ),
     ViewSpec(
@@ -181,6 +182,7 @@ _SPECS = (
         display="depth",
         source="measurement",
         color_topic=True,
+        compressed_topic="inverse depth",
         png_per_unit=1000.0,
     ),
     ViewSpec(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator
 from typing import Any
 
@@ -92,6 +93,34 @@ def test_compressed_ids_are_lossless_and_pictures_nearly(probe: Probe) -> None:
                 assert "png" in message.format
                 assert np.array_equal(decoded, views[view])
                 assert decoded.dtype == views[view].dtype
+
+
+def test_compressed_depth_is_what_its_readers_expect(probe: Probe) -> None:
+    """Decoded by their formula it is the depth to half a step, and nothing where there is none."""
+    with Eye(probe, ("depth",)) as eye:
+        packed = probe.listen(CompressedImage, "eye/depth/compressedDepth")
+        views: dict[str, Any] = {}
+
+        def arrived() -> bool:
+            packed.messages.clear()
+            views.update(eye.capture())
+            return bool(packed.messages)
+
+        until(arrived, "a compressed depth")
+        message, depth = packed.last, views["depth"]
+    assert message.format == "32FC1; compressedDepth png"
+    assert message.header.stamp == eye.images["depth"].last.header.stamp
+    data = bytes(message.data)
+    kind, scale, offset = struct.unpack("<iff", data[:12])
+    levels = cv2.imdecode(np.frombuffer(data[12:], np.uint8), cv2.IMREAD_UNCHANGED)
+    assert (kind, levels.dtype) == (0, np.uint16)
+    known = np.isfinite(depth)
+    assert np.array_equal(levels > 0, known)
+    assert 0.1 < known.mean() < 1.0
+    found = np.float32(scale) / (levels[known].astype(np.float32) - np.float32(offset))
+    half_a_step = depth[known].astype(np.float64) ** 2 / (2.0 * scale)
+    # Readers compute in single precision.
+    assert (np.abs(found - depth[known]) <= 1.01 * half_a_step + 2e-6 * depth[known]).all()
 
 
 def test_nothing_is_made_that_nobody_looks_at(probe: Probe) -> None:

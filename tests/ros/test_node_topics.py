@@ -75,6 +75,10 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
             f"{NAMESPACE}/agent/{view}/compressed": "sensor_msgs/msg/CompressedImage"
             for view in ("rgb", "category", "instance")
         },
+        **{
+            f"{NAMESPACE}/agent/{view}/compressedDepth": "sensor_msgs/msg/CompressedImage"
+            for view in ("depth", "measured_depth")
+        },
         "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
         f"{NAMESPACE}/agent/objects": "sailenv_msgs/msg/Objects",
         f"{NAMESPACE}/agent/objects/amodal": "sailenv_msgs/msg/Objects",

@@ -1,7 +1,8 @@
 """Topics derived from an agent's image topics: pictures for RViz and rqt, compressed images.
 
-`Frame` → `<view>/color` (rgb8 pictures of numbers and ids) and `<view>/compressed` (jpeg of the
-picture, lossless png of ids), each made only while somebody subscribes. Knows no simulation.
+`Frame` → `<view>/color` (rgb8 pictures of numbers and ids), `<view>/compressed` (jpeg of the
+picture, lossless png of ids) and `<view>/compressedDepth`, each made only while somebody
+subscribes. Knows no simulation.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from std_msgs.msg import Header
 from sailenv_msgs_py.images import picture_to_image
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.frame.pictures.codecs import encode_jpeg, encode_png
+from sailenv_ros.frame.pictures.codecs import encode_inverse_depth, encode_jpeg, encode_png
 from sailenv_ros.frame.pictures.colours import view_picture
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.views import VIEWS, view_spec
@@ -59,7 +60,7 @@ class DerivedTopics:
             if spec.color_topic
         }
         self._compressed = {
-            spec.name: make_publisher(CompressedImage, f"{spec.name}/compressed")
+            spec.name: make_publisher(CompressedImage, spec.compressed_name)
             for spec in specs
             if spec.compressed_topic
         }
@@ -114,9 +115,11 @@ def compressed_view(view: str, values: NDArray[Any], header: Header) -> Compress
         compressed = ", ".join(name for name, spec in VIEWS.items() if spec.compressed_topic)
         raise InvalidRequest("view to compress", view, f"one of: {compressed}")
     if codec == "jpeg":
-        data, target = encode_jpeg(values, JPEG_QUALITY), "bgr8"
+        data, kind = encode_jpeg(values, JPEG_QUALITY), "jpeg compressed bgr8"
+    elif codec == "png":
+        data, kind = encode_png(values, "quick"), "png compressed "
     else:
-        data, target = encode_png(values, "quick"), ""
-    message = CompressedImage(header=header, format=f"{encoding}; {codec} compressed {target}")
+        data, kind = encode_inverse_depth(values), "compressedDepth png"
+    message = CompressedImage(header=header, format=f"{encoding}; {kind}")
     message.data.frombytes(data)
     return message

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import struct
 from typing import get_args
 
 import cv2
@@ -10,10 +11,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from PIL import Image
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.frame.pictures.codecs import PngEffort, decode_picture, encode_jpeg, encode_png
+from sailenv_ros.frame.pictures.codecs import (
+    PngEffort,
+    decode_picture,
+    encode_inverse_depth,
+    encode_jpeg,
+    encode_png,
+)
 from sailenv_ros.native.library import native_library, using_instruction_set
 
 RANDOM = np.random.default_rng(1)
@@ -124,3 +132,24 @@ def test_what_is_no_picture_is_refused(picture: np.ndarray) -> None:
 def test_what_is_no_file_is_refused(data: bytes) -> None:
     with pytest.raises(InvalidRequest, match="a PNG or JPEG file"):
         decode_picture(data)
+
+
+@pytest.mark.parametrize(
+    "depth",
+    [
+        np.full((2, 3), np.inf, np.float32),
+        np.full((2, 3), 2.5, np.float32),
+        np.array([[0.05, 100.0, np.nan], [np.inf, 0.0, 3.0]], np.float32),
+    ],
+)
+def test_inverse_depth_has_all_depths_to_half_a_step(depth: NDArray[np.float32]) -> None:
+    """Also of a picture of one depth, of none, and of the greatest range."""
+    data = encode_inverse_depth(depth)
+    kind, scale, offset = struct.unpack("<iff", data[:12])
+    levels = cv2.imdecode(np.frombuffer(data[12:], np.uint8), cv2.IMREAD_UNCHANGED)
+    known = np.isfinite(depth) & (depth > 0)
+    assert kind == 0
+    assert np.array_equal(levels > 0, known)
+    found = scale / (levels[known].astype(float) - offset)
+    wanted = depth[known].astype(float)
+    assert (np.abs(found - wanted) <= 1.01 * wanted**2 / (2 * scale) + 1e-6 * wanted).all()
