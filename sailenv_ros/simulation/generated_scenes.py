@@ -55,7 +55,7 @@ class GeneratedScenes:
         """
         kind, seed = names.parsed_name(name, self._generator.rules)
         folder = cache_folder() / FOLDER / generation_state()
-        path = folder / f"generated_{kind}_{seed}.yaml"
+        path = folder / f"{names.file_stem(kind, seed)}.yaml"
         if not path.is_file():
             made = self._generator.generate(kind, seed)
             with storage_errors("generated scenes", folder):

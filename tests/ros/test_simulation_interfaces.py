@@ -350,6 +350,7 @@ def test_worlds_are_loaded_and_unloaded(call: StandardClient) -> None:
     worlds = call("GetAvailableWorlds").worlds
     uris = [one.world_resource.uri for one in worlds]
     assert {"sailenv://scene/optical", "sailenv://scene/generated:kitchen:0"} <= set(uris)
+    assert len(set(uris)) == len(uris)
     generated = call("GetAvailableWorlds", filter=TagsFilter(tags=["generated"])).worlds
     assert all(one.name.startswith("generated:") for one in generated)
     call("GetAvailableWorlds", FAILED, additional_sources=["https://example.org"])

@@ -8,7 +8,7 @@ from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.authoring.room_rules.rule_files import Rules
 from sailenv_ros.errors import InvalidRequest
 
-__all__ = ["FORM", "MAX_SEED", "PREFIX", "drawn_kind", "parsed_name"]
+__all__ = ["FORM", "MAX_SEED", "PREFIX", "asked_for", "drawn_kind", "file_stem", "parsed_name"]
 
 PREFIX = "generated:"
 """Prefix of the names of scenes that are generated on request."""
@@ -19,6 +19,7 @@ FORM = f"{PREFIX}KIND:SEED, such as {PREFIX}kitchen:17"
 MAX_SEED = 2**31 - 1
 
 _NAME = re.compile(r"generated:([a-z][a-z0-9_]{0,62}):([0-9]{1,10})")
+_STEM = re.compile(r"generated_([a-z][a-z0-9_]{0,62})_([0-9]{1,10})")
 
 
 def parsed_name(name: str, rules: Rules) -> tuple[str, int]:
@@ -37,6 +38,17 @@ def parsed_name(name: str, rules: Rules) -> tuple[str, int]:
         raise InvalidRequest("scene", name, f"generated:KIND:SEED with a KIND of: {kinds}")
     rules.kind(match[1])
     return match[1], int(match[2])
+
+
+def file_stem(kind: str, seed: int) -> str:
+    """Return the name of a generated scene's file without suffix, which the scene then has."""
+    return f"generated_{kind}_{seed}"
+
+
+def asked_for(scene: str) -> str:
+    """Return the name by which a scene is asked for: of a generated one, with kind and seed."""
+    match = _STEM.fullmatch(scene)
+    return scene if match is None else f"{PREFIX}{match[1]}:{match[2]}"
 
 
 def drawn_kind(seed: int, rules: Rules) -> str:

@@ -8,7 +8,7 @@ from urllib.parse import quote, unquote
 from simulation_interfaces.msg import Result, WorldResource
 from simulation_interfaces.srv import GetAvailableWorlds, GetCurrentWorld, LoadWorld, UnloadWorld
 
-from sailenv_ros.authoring.room_rules.names import PREFIX
+from sailenv_ros.authoring.room_rules.names import MAX_SEED, PREFIX, asked_for
 from sailenv_ros.authoring.room_rules.rule_files import room_kinds
 from sailenv_ros.errors import AssetError, InvalidRequest, SailenvError, SceneError, UnknownName
 from sailenv_ros.ros.nodes.simulation_interfaces.clock import pause_for
@@ -85,9 +85,12 @@ async def get_available_worlds(desk: Desk, request: Any, response: Any) -> None:
                 code = GetAvailableWorlds.Response.DEFAULT_SOURCES_FAILED
                 raise Refusal(code, str(problem)) from None
             problems.append(str(problem))
+    told = {world.name for world in worlds}
+    generated = {f"{PREFIX}{kind}:0": kind for kind in room_kinds()}
     worlds += [
-        _resource(f"{PREFIX}{kind}:0", f"a generated {kind}; seeds 0 to 2^31 - 1", kind)
-        for kind in room_kinds()
+        _resource(name, f"a generated {kind}; seeds 0 to {MAX_SEED}", kind)
+        for name, kind in generated.items()
+        if name not in told
     ]
     response.worlds = [world for world in worlds if wanted(world.tags)]
     response.result.error_message = "; ".join(problems)
@@ -112,7 +115,9 @@ async def _change(desk: Desk, scene: str) -> None:
 
 async def _world(desk: Desk, scene: str) -> Any:
     title, tags = await desk.do(EntityOperations.scene_words, scene)
-    return _resource(scene, title, *tags)
+    name = asked_for(scene)
+    kind = (name.split(":")[1],) if name.startswith(PREFIX) else ()
+    return _resource(name, title, *tags, *kind)
 
 
 def _resource(scene: str, title: str, *tags: str) -> Any:

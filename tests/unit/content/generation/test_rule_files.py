@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from sailenv_ros.authoring.room_rules.names import drawn_kind, parsed_name
+from sailenv_ros.authoring.room_rules.names import asked_for, drawn_kind, file_stem, parsed_name
 from sailenv_ros.authoring.room_rules.rule_files import read_rules, room_kinds, rules_of
 from sailenv_ros.errors import SceneError, UnknownName
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -103,6 +103,13 @@ def test_names_of_generated_scenes() -> None:
             parsed_name(f"generated:{wrong}", rules)
     with pytest.raises(UnknownName, match="did you mean 'kitchen'"):
         parsed_name("generated:kitchn:1", rules)
+
+
+def test_a_generated_scene_is_asked_for_again_by_its_kind_and_seed() -> None:
+    """From the name of its file, which has neither colons nor anything else to escape."""
+    for kind in KINDS:
+        assert asked_for(file_stem(kind, 17)) == f"generated:{kind}:17"
+    assert asked_for("room_01") == "room_01"
 
 
 def test_a_seed_stands_for_a_kind_where_none_is_asked_for() -> None:
