@@ -384,12 +384,19 @@ def test_random_calls_are_answered_as_a_model_says_and_twice_alike(call: Standar
 
 
 def test_time_that_runs_by_itself_is_played_and_paused_and_quit() -> None:
-    """In realtime mode; quitting is answered, and ends the process with status 0."""
+    """In realtime mode; quitting is answered, and ends the process with status 0.
+
+    Names may be mapped to others; a name of the simulator's node is not taken for this one's.
+    """
+    names = ("-r", "__node:=mine", "-r", "get_entities:=/all_entities")
     with (
-        NodeProcess("/playing", agent__width=64, agent__height=48) as node,
+        NodeProcess("/playing", remaps=names, agent__width=64, agent__height=48) as node,
         Probe("/playing") as probe,
     ):
         call = StandardClient(probe)
+        assert "floor" in probe.call(srv.GetEntities, "/all_entities").entities
+        known = probe.node.get_node_names_and_namespaces()
+        assert {("mine", "/playing"), ("simulation_interfaces", "/playing")} <= set(known)
         assert call.simulation_state == SimulationState.STATE_PLAYING
         call("StepSimulation", FAILED)
         call.set_to(SimulationState.STATE_PAUSED)

@@ -61,7 +61,8 @@ class SimulationInterfaces:
             NODE_NAME,
             namespace=beside.get_namespace(),
             context=beside.context,
-            use_global_arguments=False,
+            # Remappings of names are for this node, too, but for that of the simulator's node.
+            cli_args=["--ros-args", "-r", f"__node:={NODE_NAME}"],
             enable_rosout=False,
             start_parameter_services=False,
         )
