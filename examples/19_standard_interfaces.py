@@ -5,6 +5,7 @@ The same program works with Gazebo, Isaac Sim and O3DE, as far as these offer th
 
 import subprocess
 import sys
+from typing import Any
 
 import rclpy
 from geometry_msgs.msg import PoseStamped
@@ -32,10 +33,10 @@ SIMULATOR = [
 class Client(Node):
     """Calls services by their types and names."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__("client", namespace=NAMESPACE)
 
-    def call(self, kind, name, /, **fields):
+    def call(self, kind: Any, name: str, /, **fields: Any) -> Any:
         """Call a service; a refusal ends the program with its sentence."""
         client = self.create_client(kind, name)
         client.wait_for_service()
@@ -47,12 +48,12 @@ class Client(Node):
         return answer
 
 
-def resource(kind, field, uri):
+def resource(kind: Any, field: str, uri: str) -> dict[str, Any]:
     """Return a resource as either version of the interfaces has it: 1.5 or 2.1."""
     return {"uri": uri} if hasattr(kind.Request, "uri") else {field: Resource(uri=uri)}
 
 
-def work(client):
+def work(client: Client) -> None:
     """Load a world, let a ball fall twice, look whether that was the same, and quit."""
     features = client.call(GetSimulatorFeatures, "get_simulator_features").features
     print(len(features.features), "features;", features.custom_info)
