@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -27,7 +26,7 @@ from simulation_interfaces.msg import (
 
 from sailenv_msgs_py.transforms import pose_from_msg
 from sailenv_ros.ros.nodes.simulation_interfaces.table import ROWS
-from tests.support.ros_probe import DISCOVERY_S, RELIABLE, Probe
+from tests.support.ros_probe import RELIABLE, Probe
 from tests.support.sim_node_process import NodeProcess
 from tests.support.standard_client import StandardClient, set_resource, world
 from tests.support.standard_storm import storm
@@ -307,7 +306,6 @@ def test_steps_tell_how_far_they_are(call: StandardClient, probe: Probe) -> None
         probe.node, SimulateSteps, "simulate_steps", feedback_sub_qos_profile=RELIABLE
     )
     until(client.server_is_ready, "the action")
-    threading.Event().wait(DISCOVERY_S)  # that it knows us, too, nothing tells
     heard: list[Any] = []
 
     def begun(steps: int) -> Any:
@@ -323,21 +321,27 @@ def test_steps_tell_how_far_they_are(call: StandardClient, probe: Probe) -> None
         until(result.done, "the result")
         return result.result()
 
+    def stepped() -> bool:
+        assert ended(begun(1)).result.result.result == OK
+        return bool(heard)
+
+    # That the action has found its listener is known from what it hears.
+    until(stepped, "the first feedback")
+    call("ResetSimulation")
     assert ended(begun(24)).result.result.result == OK
-    until(lambda: heard and not heard[-1].remaining_steps, "the last feedback")
-    assert [(one.completed_steps, one.remaining_steps) for one in heard] == [
-        (n, 24 - n) for n in range(1, 25)
-    ]
+    until(lambda: heard[-1].completed_steps == 24, "the last feedback")
+    told = [(one.completed_steps, one.remaining_steps) for one in heard]
+    assert [steps for steps in told if sum(steps) == 24] == [(n, 24 - n) for n in range(1, 25)]
     assert call.state("floor").header.stamp.nanosec == 100_000_000
     heard.clear()
     goal = begun(1_000_000)
-    until(lambda: heard, "feedback")
+    until(lambda: heard and heard[-1].remaining_steps > 24, "feedback")
     cancelling = goal.cancel_goal_async()
     until(cancelling.done, "the answer to a cancellation")
-    told = ended(goal)
-    assert told.status == GoalStatus.STATUS_CANCELED
-    assert told.result.result.result == FAILED
-    assert "of 1000000 steps" in told.result.result.error_message
+    cancelled = ended(goal)
+    assert cancelled.status == GoalStatus.STATUS_CANCELED
+    assert cancelled.result.result.result == FAILED
+    assert "of 1000000 steps" in cancelled.result.result.error_message
     assert ended(begun(0)).result.result.result == FAILED
     call.set_to(SimulationState.STATE_STOPPED)
     assert ended(begun(1)).result.result.result == FAILED
