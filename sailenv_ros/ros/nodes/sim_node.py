@@ -41,7 +41,7 @@ from sailenv_ros.ros.nodes.parameters import declare_parameters
 from sailenv_ros.ros.nodes.requests import OperationRunner
 from sailenv_ros.ros.nodes.running import exit_status, refusing
 from sailenv_ros.ros.nodes.services import SimulatorServices
-from sailenv_ros.ros.nodes.simulation_interfaces import SimulationInterfaces
+from sailenv_ros.ros.nodes.simulation_interfaces import standard_interfaces
 from sailenv_ros.ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.memory import keep_freed_memory
@@ -108,7 +108,7 @@ class SimNode:
         self._diagnostics = Diagnostics(node, simulation, self._endpoints.counts)
         agent = "" if hosted.parameters.agent is None else hosted.parameters.agent.name
         self._live_parameters = LiveParameters(node, simulation, agent)
-        self._interfaces = SimulationInterfaces(node, simulation, quit_process)
+        self._interfaces = standard_interfaces(node, simulation, quit_process)
         self._spinning = ExecutorThread(executor)
         self._capture_server = CaptureServer(
             simulation,
@@ -131,13 +131,15 @@ class SimNode:
         self._joints.begin(self._simulation)
         self._executor.add_node(self._node)
         self._spinning.start()
-        self._interfaces.start()
+        if self._interfaces is not None:
+            self._interfaces.start()
 
     def close(self, timeout_s: float) -> bool:
         """End everything but the node; False if the simulation did not end in time."""
         self._hosted.close_servers()
         self._capture_server.close()
-        self._interfaces.close()
+        if self._interfaces is not None:
+            self._interfaces.close()
         self._spinning.stop(0.5)
         self._announcements.end()
         self._contacts.end()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rclpy.action.server import CancelResponse
+from simulation_interfaces.action import SimulateSteps
 from simulation_interfaces.msg import Result, SimulationState
 from simulation_interfaces.srv import ResetSimulation, SetSimulationState
 
@@ -89,9 +90,9 @@ async def step_simulation(desk: Desk, request: Any, response: Any) -> None:
     await desk.do(Operations.step, request.steps)
 
 
-async def simulate_steps(desk: Desk, goal: Any, action: Any) -> Any:
+async def simulate_steps(desk: Desk, goal: Any) -> Any:
     """Advance step by step, telling of each; the callback of an action."""
-    result = action.Result()
+    result = SimulateSteps.Result()
     try:
         desk.require_world()
         _require_paused(desk)
@@ -107,9 +108,10 @@ async def simulate_steps(desk: Desk, goal: Any, action: Any) -> Any:
                 )
                 return result
             await desk.do(Operations.step, 1)
-            goal.publish_feedback(
-                action.Feedback(completed_steps=completed, remaining_steps=wanted - completed)
+            told = SimulateSteps.Feedback(
+                completed_steps=completed, remaining_steps=wanted - completed
             )
+            goal.publish_feedback(told)
     except Exception as error:
         problem = error if isinstance(error, SailenvError) else InternalFault.of(error)
         result.result = Result(result=code_of(problem), error_message=str(problem))

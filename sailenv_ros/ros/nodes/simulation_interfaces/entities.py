@@ -36,7 +36,7 @@ __all__ = [
     "set_entity_state",
 ]
 
-INVALID_POSE = getattr(SetEntityState.Response, "INVALID_POSE", Result.RESULT_OPERATION_FAILED)
+INVALID_POSE = SetEntityState.Response.INVALID_POSE
 
 MOST_TAGS = 100
 MOST_CHARACTERS = 10_000

@@ -10,12 +10,12 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-import simulation_interfaces.action as actions
 from rclpy.action.server import ActionServer
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from simulation_interfaces.action import SimulateSteps
 from simulation_interfaces.srv import GetSimulatorFeatures
 
 from sailenv_ros.ros.executor_thread import ExecutorThread
@@ -23,7 +23,7 @@ from sailenv_ros.ros.nodes.requests import OperationRunner
 from sailenv_ros.ros.nodes.simulation_interfaces.clock import accept_cancel, simulate_steps
 from sailenv_ros.ros.nodes.simulation_interfaces.desk import Desk
 from sailenv_ros.ros.nodes.simulation_interfaces.results import answered
-from sailenv_ros.ros.nodes.simulation_interfaces.table import ACTION, ROWS, Row, features_of
+from sailenv_ros.ros.nodes.simulation_interfaces.table import ROWS, Row, features_of
 from sailenv_ros.simulation import Simulation
 
 __all__ = ["NODE_NAME", "SimulationInterfaces", "service_name"]
@@ -43,16 +43,7 @@ def service_name(type_name: str) -> str:
 
 
 class SimulationInterfaces:
-    """Offers all services and actions that the installed `simulation_interfaces` have.
-
-    Parameters
-    ----------
-    beside : Node
-        The simulator's node, whose namespace and context are taken.
-    simulation : Simulation
-    quit_process : callable
-        Asks the process to end.
-    """
+    """Offers all services and the action; see `standard_interfaces` for the parameters."""
 
     def __init__(
         self, beside: Node, simulation: Simulation, quit_process: Callable[[], None]
@@ -75,26 +66,18 @@ class SimulationInterfaces:
             quit_soon=lambda: self._node.create_timer(QUITS_AFTER_S, quit_process),
         )
         group = ReentrantCallbackGroup()
-        offered: list[str] = []
         for row in ROWS:
-            if row.type is not None:
-                self._serve(row.type, row.type_name, self._handler(row), group)
-                offered.append(row.type_name)
-        self._actions = []
-        action = getattr(actions, ACTION, None)
-        if action is not None:
-            offered.append(ACTION)
-            server = ActionServer(
-                self._node,
-                action,
-                service_name(ACTION),
-                execute_callback=partial(_simulate, self._desk, action),
-                cancel_callback=accept_cancel,
-                feedback_pub_qos_profile=QoSProfile(depth=FEEDBACK_DEPTH),
-                callback_group=group,
-            )
-            self._actions.append(server)
-        features = features_of(tuple(offered))
+            self._serve(row.type, row.type_name, self._handler(row), group)
+        self._action = ActionServer(
+            self._node,
+            SimulateSteps,
+            service_name(SimulateSteps.__name__),
+            execute_callback=partial(simulate_steps, self._desk),
+            cancel_callback=accept_cancel,
+            feedback_pub_qos_profile=QoSProfile(depth=FEEDBACK_DEPTH),
+            callback_group=group,
+        )
+        features = features_of()
 
         async def tell(request: Any, response: Any) -> None:
             response.features = features
@@ -110,8 +93,7 @@ class SimulationInterfaces:
     def close(self) -> None:
         """End."""
         self._spinning.stop(0.5)
-        for server in self._actions:
-            server.destroy()
+        self._action.destroy()
         self._executor.shutdown(0.0)
         self._node.destroy_node()
 
@@ -126,7 +108,3 @@ class SimulationInterfaces:
             await row.handler(self._desk, request, response)
 
         return handle
-
-
-async def _simulate(desk: Desk, action: Any, goal: Any) -> Any:
-    return await simulate_steps(desk, goal, action)

@@ -8,7 +8,7 @@ from urllib.parse import quote, unquote
 
 from rclpy.exceptions import InvalidNamespaceException
 from rclpy.validate_namespace import validate_namespace
-from simulation_interfaces.msg import Result
+from simulation_interfaces.msg import Result, SpawnResult
 from simulation_interfaces.srv import SpawnEntity
 
 from sailenv_ros.errors import AssetError, InvalidEntry, NameTaken, SailenvError, UnknownName
@@ -30,7 +30,6 @@ FORMAT = "sailenv"
 MOST_CHARACTERS = 64 * 1024
 
 Code = SpawnEntity.Response
-INVALID_POSE = getattr(Code, "INVALID_POSE", Result.RESULT_OPERATION_FAILED)
 
 
 def asset_uri(name: str) -> str:
@@ -45,8 +44,6 @@ async def spawn_entity(desk: Desk, request: Any, response: Any) -> None:
 
 async def spawn_entities(desk: Desk, request: Any, response: Any) -> None:
     """Spawn several, each as if it were alone."""
-    from simulation_interfaces.msg import SpawnResult  # which older versions lack
-
     for one in request.spawn_requests:
         told = SpawnResult()
         try:
@@ -67,7 +64,7 @@ async def _spawn(desk: Desk, request: Any) -> str:
     entry = _entry(*resource_of(request, "entity_resource"))
     name = _name(desk, request, str(entry.get("name") or ""), str(entry.get("asset")))
     pose = await pose_in_world(
-        desk, request.initial_pose.header.frame_id, request.initial_pose.pose, INVALID_POSE
+        desk, request.initial_pose.header.frame_id, request.initial_pose.pose, Code.INVALID_POSE
     )
     # Slashes separate namespaces in names of entities; the scene's own names have none.
     own = {one.name for one in desk.info.instances}

@@ -19,11 +19,10 @@ from sailenv_ros.ros.nodes.simulation_interfaces import (
 from sailenv_ros.ros.nodes.simulation_interfaces.desk import Desk
 from sailenv_ros.version import __version__
 
-__all__ = ["ACTION", "ACTION_FEATURES", "ROWS", "Row", "features_of"]
+__all__ = ["ROWS", "Row", "features_of"]
 
 Handler = Callable[[Desk, Any, Any], Awaitable[None]]
 
-ACTION = "SimulateSteps"
 ACTION_FEATURES = ("STEP_SIMULATION_ACTION",)
 
 
@@ -49,8 +48,8 @@ class Row:
 
     @property
     def type(self) -> Any:
-        """The service's type; None where the installed version lacks it."""
-        return getattr(srv, self.type_name, None)
+        """The service's type."""
+        return getattr(srv, self.type_name)
 
 
 ROWS = (
@@ -106,13 +105,11 @@ ROWS = (
 """All services but `GetSimulatorFeatures`, which tells what follows from this table."""
 
 
-def features_of(names: tuple[str, ...]) -> SimulatorFeatures:
-    """Make the list of features that services and actions of these names stand for."""
-    offered = [name for row in ROWS if row.type_name in names for name in row.features]
-    offered += ACTION_FEATURES if ACTION in names else ()
-    known = (name for name in offered if hasattr(SimulatorFeatures, name))
+def features_of() -> SimulatorFeatures:
+    """Make the list of features that the services and the action stand for."""
+    offered = {name for row in ROWS for name in row.features}.union(ACTION_FEATURES)
     return SimulatorFeatures(
-        features=sorted({getattr(SimulatorFeatures, name) for name in known}),
+        features=sorted(getattr(SimulatorFeatures, name) for name in offered),
         spawn_formats=[spawning.FORMAT],
         custom_info=(
             f"sailenv_ros {__version__}; spawnables by sailenv://asset/NAME, worlds by "
