@@ -166,14 +166,8 @@ class PieceBuilder:
 
     def set_down(self) -> None:
         """Move all so that the lowest point that is drawn is at z = 0: legs are cut off aslant."""
-        low = min(
-            (
-                float(mesh.positions[:, 2].min())
-                for one in self.components
-                for _, mesh in one.meshes
-            ),
-            default=0.0,
-        )
+        drawn = [mesh.positions for one in self.components for _, mesh in one.meshes]
+        low = min((float(positions[:, 2].min()) for positions in drawn), default=0.0)
         by = np.array([0.0, 0.0, -low])
         if abs(low) < LEAST_SHIFT_M:
             return
