@@ -2,7 +2,8 @@
 
 `Simulation` is the simulator in this process, without ROS. `Agent` is a camera in a simulator that
 runs as a ROS 2 node. `load_scene` reads a scene file, `load_calibration` the lens of a
-real camera, `load_rig` several cameras, `show` shows a frame. They are imported when they are first
+real camera, `load_rig` several cameras, `show` shows a frame, `export_scene` and `export_asset`
+write files of other programs. They are imported when they are first
 used, so importing the package imports neither ROS nor OpenGL.
 """
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from sailenv_ros.ros.client.agent import Agent
     from sailenv_ros.scene.calibration_files import load_calibration, load_rig
     from sailenv_ros.scene.loader import load_scene
+    from sailenv_ros.scene_export import export_asset, export_scene
     from sailenv_ros.simulation import Simulation
     from sailenv_ros.types.agents import AgentSpec
     from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -38,6 +40,8 @@ __all__ = [
     "RigCamera",
     "Simulation",
     "__version__",
+    "export_asset",
+    "export_scene",
     "load_calibration",
     "load_rig",
     "load_scene",
@@ -54,6 +58,8 @@ _HOMES = {
     "Pose": "sailenv_ros.types.geometry",
     "RigCamera": "sailenv_ros.types.rigs",
     "Simulation": "sailenv_ros.simulation",
+    "export_asset": "sailenv_ros.scene_export",
+    "export_scene": "sailenv_ros.scene_export",
     "load_calibration": "sailenv_ros.scene.calibration_files",
     "load_rig": "sailenv_ros.scene.calibration_files",
     "load_scene": "sailenv_ros.scene.loader",

@@ -22,18 +22,19 @@ from sailenv_content.scene_import.categories_by_name import category_of_name
 from sailenv_content.scene_import.default_light import add_daylight
 from sailenv_content.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
 from sailenv_content.scene_import.scene_parts import asset_of_parts
+from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.gltf_description import description_of
 from sailenv_ros.assets.model_files import RawPart, read_parts
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import LUMENS_PER_WATT
 
 __all__ = ["import_gltf"]
 
 Matrix = NDArray[np.float64]
 Tree = Mapping[str, Any]
 
-LUMENS_PER_WATT = 683.0
 MOST_NODES = 20_000
 MOST_LIGHTS = 60
 
@@ -57,7 +58,7 @@ def import_gltf(path: Path, names: Names, ours: Mapping[str, PackEntry]) -> Impo
     title = next((str(s.get("name")) for s in _list(tree, "scenes") if s.get("name")), path.stem)
     scene = ImportedScene(title=title, description=f"Imported from the glTF file {path.name}.")
     poses = _node_poses(path, tree)
-    _add_objects(path, scene, names, poses)
+    _add_objects(path, scene, names, poses, _told_categories(tree))
     for node, pose in zip(_list(tree, "nodes"), poses, strict=True):
         if pose is not None:
             _add_light(tree, node, pose, scene, names)
@@ -133,8 +134,20 @@ def _local(path: Path, node: Tree) -> Matrix:
 # -- objects -------------------------------------------------------------------------------
 
 
+def _told_categories(tree: Tree) -> dict[str, str]:
+    """Return the categories that extras of nodes have, by the names of these nodes."""
+    known = {category.name for category in load_categories().values()}
+    told = ((node.get("name"), node.get("extras")) for node in _list(tree, "nodes"))
+    named = ((name, extras.get("category")) for name, extras in told if isinstance(extras, dict))
+    return {str(name): category for name, category in named if category in known}
+
+
 def _add_objects(
-    path: Path, scene: ImportedScene, names: Names, poses: Sequence[Matrix | None]
+    path: Path,
+    scene: ImportedScene,
+    names: Names,
+    poses: Sequence[Matrix | None],
+    told: Mapping[str, str],
 ) -> None:
     if all(pose is None for pose in poses):
         return
@@ -142,13 +155,14 @@ def _add_objects(
     for label, parts in _grouped(read_parts(path)):
         shown = names.of_object(label)
         pose, local = _placed(parts)
-        key = tuple(_look(part) for part in local)
+        category = told.get(label) or category_of_name(f"{label} {parts[0].name}")
+        key = (told.get(label), *(_look(part) for part in local))
         if key not in made:
             made[key] = asset_of_parts(
                 names.of_asset(label),
                 local,
                 display_name=f"{scene.title[:40]} {shown}",
-                category=category_of_name(f"{label} {parts[0].name}"),
+                category=category,
                 source=scene.description,
             )
             scene.assets.append(made[key])

@@ -19,6 +19,7 @@ from sailenv_ros.assets.pack import BUILD_COMMAND, PACK_FILE, AssetPack
 from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.cli.furniture import build_furniture, object_progress
 from sailenv_ros.cli.pieces import add_show, run_show
+from sailenv_ros.cli.scene_export import add_asset_arguments, export_one_asset
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.light.bake.light_files import damaged_light
 from sailenv_ros.simulation.models.import_process import import_file_apart
@@ -65,6 +66,9 @@ def add_parser(subparsers: Any) -> None:
         "--azimuth", type=float, default=AZIMUTH_DEG, metavar="DEG", help="of the camera"
     )
     add_show(actions)
+    add_asset_arguments(
+        actions.add_parser("export", help="write an object as a file of another program")
+    )
     add = actions.add_parser("add", help="put a model of yours into your own pack")
     add.add_argument("model", type=Path, metavar="FILE", help=".glb, .gltf, .obj or .zip")
     add.add_argument("--category", required=True, help="what it is, e.g. chair")
@@ -85,6 +89,7 @@ def run(args: argparse.Namespace) -> int:
         "sheet": _sheet,
         "show": run_show,
         "add": _add,
+        "export": export_one_asset,
         "verify": _verify,
     }[args.action](args)
 

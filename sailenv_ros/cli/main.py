@@ -22,7 +22,7 @@ __all__ = ["COMMANDS", "command_parser", "main"]
 
 COMMANDS = {
     "behaviours": "list how objects can move of themselves, with every parameter",
-    "assets": "build the furniture, list and picture objects, add one's own",
+    "assets": "build the furniture, list, picture and export objects, add one's own",
     "bag": "say what a recording holds, restore a damaged one",
     "bench": "measure speed and the accuracy of flow, as one table or as the paper's experiments",
     "dataset": "make data sets by recipe, check them, look at them",
@@ -33,7 +33,7 @@ COMMANDS = {
     "record": "record what agents see in an MCAP bag",
     "report": "write one page of all results of bench and eval",
     "run": "start the simulator, with or without ROS",
-    "scene": "check, render, bake, list and begin scenes, export the schema of the format",
+    "scene": "check, render, bake, import, export and begin scenes",
     "setup": "build the furniture and bake the light of the rooms, once on each machine",
     "stream": "make the published streams of continual learning as bags",
 }

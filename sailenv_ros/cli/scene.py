@@ -1,4 +1,4 @@
-"""`sailenv scene`: check, list, render, bake and begin scenes, export the format's JSON Schema."""
+"""`sailenv scene`: check, list, render, bake, import, export, begin scenes; their JSON Schema."""
 
 from __future__ import annotations
 
@@ -9,7 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from sailenv_ros.behaviours import behaviour_kinds
-from sailenv_ros.cli import scene_bake, scene_generate, scene_import, scene_lens, scene_render
+from sailenv_ros.cli import (
+    scene_bake,
+    scene_export,
+    scene_generate,
+    scene_import,
+    scene_lens,
+    scene_render,
+)
 from sailenv_ros.cli.arguments import add_allow_modules
 from sailenv_ros.errors import AssetError, InvalidRequest, SceneError, UnknownName
 from sailenv_ros.scene.loader import load_scene
@@ -34,7 +41,7 @@ __all__ = ["add_parser", "run"]
 def add_parser(subparsers: Any) -> None:
     """Add the command to those of `sailenv`."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "scene", help="check, render, bake, list and begin scenes, export the schema of the format"
+        "scene", help="check, render, bake, import, export and begin scenes"
     )
     parser.set_defaults(run=run)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
@@ -55,6 +62,9 @@ def add_parser(subparsers: Any) -> None:
     )
     scene_import.add_arguments(
         actions.add_parser("import", help="make a scene of a file of another program")
+    )
+    scene_export.add_arguments(
+        actions.add_parser("export", help="write a scene as a file of another program")
     )
     scene_generate.add_arguments(
         actions.add_parser("generate", help="make a furnished room from a seed")
@@ -88,6 +98,8 @@ def run(args: argparse.Namespace) -> int:
         return scene_bake.bake_scenes(args)
     if args.action == "import":
         return scene_import.import_file(args)
+    if args.action == "export":
+        return scene_export.export_one_scene(args)
     if args.action == "generate":
         return scene_generate.generate(args)
     if args.action == "lens":

@@ -22,6 +22,7 @@ __all__ = [
     "LIGHT_ATTRIBUTES",
     "LIGHT_KINDS",
     "LIGHT_LIMITS",
+    "LUMENS_PER_WATT",
     "MAX_RADIANCE",
     "Environment",
     "Light",
@@ -53,6 +54,9 @@ ENVIRONMENT_LIMITS: Mapping[str, Bounds] = {
     "exposure": Bounds(least=-20.0, most=20.0, unit="stops"),
 }
 """Bounds of each number of an environment."""
+
+LUMENS_PER_WATT = 683.0
+"""Candela, lux and nits of other programs are as many times our watts."""
 
 MAX_RADIANCE = 1e6
 """Greatest value of each channel of a linear colour."""

@@ -30,6 +30,8 @@ def test_the_public_names_are_these() -> None:
         "RigCamera",
         "Simulation",
         "__version__",
+        "export_asset",
+        "export_scene",
         "load_calibration",
         "load_rig",
         "load_scene",

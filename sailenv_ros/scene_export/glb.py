@@ -1,0 +1,183 @@
+"""`ExportedScene` → binary glTF 2.0.
+
+Each body is a node with its pose and scale; labelled parts of its model are its children. Meshes,
+materials and pictures are shared. The world's axes (x forward, y left, z up) become the file's (y
+up, front towards +z), as the importer turns them back. What glTF has no word for stands in extras.
+
+Khronos Group, "glTF 2.0 Specification" (2021), with KHR_lights_punctual and
+KHR_materials_emissive_strength.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sailenv_ros.assets.gltf_description import glb_with
+from sailenv_ros.assets.gltf_emission import write_strength
+from sailenv_ros.scene_export.contents import (
+    ExportedBody,
+    ExportedPiece,
+    ExportedScene,
+    Written,
+)
+from sailenv_ros.scene_export.extras import body_extras, camera_extras, instance_extras
+from sailenv_ros.scene_export.glb_buffers import GlbBuffers
+from sailenv_ros.scene_export.glb_lights import LIGHTS, gltf_camera, gltf_light
+from sailenv_ros.scene_export.losses import camera_losses, light_losses, physics_losses
+from sailenv_ros.scene_export.optics import light_pose, looking_back
+from sailenv_ros.scene_export.textures import Textures, texture_slots
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.model import Material, ModelPart
+from sailenv_ros.version import __version__
+
+__all__ = ["write_glb"]
+
+_FILE_FROM_WORLD = Pose(orientation_xyzw=(-0.5, -0.5, -0.5, 0.5))
+"""The file's x, y, z are the world's y, z, x."""
+
+_BODY_FROM_FILE = (0.5, 0.5, 0.5, 0.5)
+
+_TEXTURE_KEYS = {
+    "base_colour": ("pbrMetallicRoughness", "baseColorTexture"),
+    "metallic_roughness": ("pbrMetallicRoughness", "metallicRoughnessTexture"),
+    "normal": (None, "normalTexture"),
+}
+
+
+def write_glb(scene: ExportedScene, stem: str) -> Written:
+    """Return a scene as a glTF file in one piece; the same bytes for the same scene."""
+    made = _GlbWriter(scene)
+    losses = (
+        *physics_losses(scene, "glTF", extras=True),
+        *light_losses(scene, "glTF"),
+        *camera_losses(scene, "glTF"),
+    )
+    return Written(data=made.data(), losses=losses)
+
+
+class _GlbWriter:
+    def __init__(self, scene: ExportedScene) -> None:
+        self._scene = scene
+        self._buffers = GlbBuffers()
+        self._textures = Textures()
+        self._images: dict[str, int] = {}
+        self._materials: dict[int, int] = {}
+        self._meshes: dict[tuple[tuple[int, int], ...], int] = {}
+        self._tree: dict[str, Any] = {
+            "asset": {"version": "2.0", "generator": f"sailenv_ros {__version__}"},
+            "scene": 0,
+            "scenes": [{"name": scene.name, "nodes": []}],
+        }
+
+    def data(self) -> bytes:
+        """Return the whole file."""
+        roots = self._tree["scenes"][0]["nodes"]
+        roots += [self._add_body(body) for body in self._scene.bodies]
+        roots += [self._add_light(light) for light in self._scene.lights]
+        for camera in self._scene.cameras:
+            extras = camera_extras(camera.intrinsics)
+            entry = {"name": camera.name, **gltf_camera(camera.intrinsics), "extras": extras}
+            node = {"name": camera.name, "camera": self._append("cameras", entry)}
+            roots.append(self._append("nodes", {**node, **_looking(camera.pose)}))
+        if self._scene.lights:
+            self._tree["extensionsUsed"] = [LIGHTS]
+        views, binary = self._buffers.finished()
+        self._tree["accessors"] = self._buffers.accessors
+        self._tree["bufferViews"] = views
+        self._tree["buffers"] = [{"byteLength": len(binary)}]
+        write_strength(self._tree)
+        return glb_with(self._tree, struct.pack("<I", len(binary)) + b"BIN\0" + binary)
+
+    def _append(self, key: str, entry: Mapping[str, Any]) -> int:
+        entries: list[Mapping[str, Any]] = self._tree.setdefault(key, [])
+        entries.append(entry)
+        return len(entries) - 1
+
+    # -- nodes -----------------------------------------------------------------------------
+
+    def _add_body(self, body: ExportedBody) -> int:
+        own, *labelled = body.pieces
+        pose = _FILE_FROM_WORLD.carried(body.pose).turned(_BODY_FROM_FILE)
+        node = {**self._node(own), **_placed(pose)}
+        x, y, z = body.scale
+        if body.scale != (1.0, 1.0, 1.0):
+            node["scale"] = [y, z, x]
+        node["extras"].update(body_extras(body))
+        if labelled:
+            node["children"] = [self._append("nodes", self._node(piece)) for piece in labelled]
+        return self._append("nodes", node)
+
+    def _node(self, piece: ExportedPiece) -> dict[str, Any]:
+        node: dict[str, Any] = {"name": piece.instance.name}
+        if piece.parts:
+            node["mesh"] = self._mesh(piece.instance.asset, piece.parts)
+        return {**node, "extras": instance_extras(piece.instance)}
+
+    def _add_light(self, light: Light) -> int:
+        held = self._tree.setdefault("extensions", {}).setdefault(LIGHTS, {"lights": []})
+        held["lights"].append(gltf_light(light))
+        node = {"name": light.name, "extensions": {LIGHTS: {"light": len(held["lights"]) - 1}}}
+        return self._append("nodes", {**node, **_looking(light_pose(light))})
+
+    # -- meshes and materials --------------------------------------------------------------
+
+    def _mesh(self, name: str, parts: Sequence[ModelPart]) -> int:
+        key = tuple((id(part.mesh), id(part.material)) for part in parts)
+        if key not in self._meshes:
+            primitives = []
+            for part in parts:
+                attributes, indices = self._buffers.mesh(part.mesh)
+                material = self._material(part.material)
+                primitives.append(
+                    {"attributes": attributes, "indices": indices, "material": material}
+                )
+            self._meshes[key] = self._append("meshes", {"name": name, "primitives": primitives})
+        return self._meshes[key]
+
+    def _material(self, material: Material) -> int:
+        if id(material) not in self._materials:
+            entry: dict[str, Any] = {
+                "pbrMetallicRoughness": {
+                    "baseColorFactor": list(material.base_colour),
+                    "metallicFactor": material.metallic,
+                    "roughnessFactor": material.roughness,
+                }
+            }
+            if material.name:
+                entry["name"] = material.name
+            for slot, texture, alpha in texture_slots(material):
+                within, key = _TEXTURE_KEYS[slot]
+                place = entry[within] if within else entry
+                place[key] = {"index": self._texture(texture, alpha=alpha)}
+            if any(material.emission):
+                entry["emissiveFactor"] = list(material.emission)
+                if "baseColorTexture" in entry["pbrMetallicRoughness"]:
+                    entry["emissiveTexture"] = entry["pbrMetallicRoughness"]["baseColorTexture"]
+            if material.alpha != "opaque":
+                entry["alphaMode"] = material.alpha.upper()
+            if material.alpha == "mask":
+                entry["alphaCutoff"] = material.alpha_cutoff
+            if material.double_sided:
+                entry["doubleSided"] = True
+            self._materials[id(material)] = self._append("materials", entry)
+        return self._materials[id(material)]
+
+    def _texture(self, texture: Any, *, alpha: bool) -> int:
+        picture = self._textures.of(texture, alpha=alpha)
+        if picture.name not in self._images:
+            view = self._buffers.picture(picture)
+            image = {"mimeType": picture.mime_type, "bufferView": view}
+            source = self._append("images", image)
+            self._images[picture.name] = self._append("textures", {"source": source})
+        return self._images[picture.name]
+
+
+def _placed(pose: Pose) -> dict[str, Any]:
+    return {"translation": list(pose.position_m), "rotation": list(pose.orientation_xyzw)}
+
+
+def _looking(pose: Pose) -> dict[str, Any]:
+    return _placed(looking_back(_FILE_FROM_WORLD.carried(pose)))

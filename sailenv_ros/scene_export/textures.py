@@ -1,0 +1,82 @@
+"""Textures of a scene as picture files, each once: equal pictures have one name."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from sailenv_ros.assets.glb import picture_bytes
+from sailenv_ros.types.model import Material, Texture
+
+__all__ = ["SLOTS", "Picture", "Textures", "texture_slots"]
+
+SLOTS = ("base_colour", "metallic_roughness", "normal")
+"""Maps of a material, as its fields begin."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """One picture file.
+
+    Attributes
+    ----------
+    name : str
+        Of the file, after its content.
+    data : bytes
+    mime_type : str
+    """
+
+    name: str
+    data: bytes
+    mime_type: str
+
+
+class Textures:
+    """Picture files by what they are of.
+
+    Parameters
+    ----------
+    png : bool
+        True stores all of them as PNG, for programs that read nothing else.
+    """
+
+    def __init__(self, *, png: bool = False) -> None:
+        self._png = png
+        self._of: dict[tuple[int, bool], Picture] = {}
+        self._kept: list[Texture] = []
+        self._by_name: dict[str, Picture] = {}
+
+    @property
+    def pictures(self) -> Mapping[str, Picture]:
+        """All pictures that were asked for, by their names."""
+        return self._by_name
+
+    def of(self, texture: Texture, *, alpha: bool) -> Picture:
+        """Return the file of a texture, the same one for the same content.
+
+        Parameters
+        ----------
+        texture : (H, W, 4) uint8
+        alpha : bool
+            Whether its alpha is seen.
+        """
+        lossless = alpha or self._png
+        key = id(texture), lossless
+        if key not in self._of:
+            data = picture_bytes(texture, lossless=lossless)
+            stem, kind = hashlib.sha256(data).hexdigest()[:16], "png" if lossless else "jpg"
+            mime = "image/png" if lossless else "image/jpeg"
+            made = Picture(name=f"{stem}.{kind}", data=data, mime_type=mime)
+            self._of[key] = self._by_name.setdefault(made.name, made)
+            self._kept.append(texture)  # so that no other one gets its id
+        return self._of[key]
+
+
+def texture_slots(material: Material) -> Iterator[tuple[str, Texture, bool]]:
+    """Yield the name of each map that a material has, the map, and whether its alpha is seen."""
+    seen = material.alpha != "opaque"
+    for slot in SLOTS:
+        texture: Texture | None = getattr(material, f"{slot}_texture")
+        if texture is not None:
+            yield slot, texture, seen and slot == "base_colour"
