@@ -123,6 +123,7 @@ def _described(mujoco: Any, model: Any) -> tuple[dict[str, Any], dict[str, Any]]
                 "rgba": [float(v) for v in rgba],
                 "shininess": shine,
                 "drawn": int(model.geom_group[number]) in DRAWN_GROUPS,
+                "user": model.geom_user[number].tolist(),
                 "collides": bool(model.geom_contype[number] or model.geom_conaffinity[number]),
             }
         )
@@ -146,7 +147,13 @@ def _described(mujoco: Any, model: Any) -> tuple[dict[str, Any], dict[str, Any]]
         }
         for number in range(model.ncam)
     ]
-    return {"bodies": bodies, "geoms": geoms, "lights": lights, "cameras": cameras}, arrays
+    texts = {}
+    for number in range(model.ntext):
+        first, size = int(model.text_adr[number]), int(model.text_size[number])
+        data = bytes(model.text_data[first : first + size]).rstrip(b"\0")
+        texts[name(names.mjOBJ_TEXT, number)] = data.decode("utf-8", "replace")
+    scene = {"bodies": bodies, "geoms": geoms, "lights": lights, "cameras": cameras, "texts": texts}
+    return scene, arrays
 
 
 def _joint(mujoco: Any, model: Any, data: Any, body: int, joint: int) -> dict[str, Any]:

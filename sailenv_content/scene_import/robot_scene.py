@@ -27,6 +27,7 @@ from sailenv_content.scene_import.robot_joints import check_limits, pose_entry, 
 from sailenv_content.scene_import.robot_places import RobotPlaces
 from sailenv_content.scene_import.safe_xml import XmlNode, read_xml
 from sailenv_content.scene_import.scene_parts import asset_of_parts
+from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart
 from sailenv_ros.assets.pack import PackEntry
@@ -175,6 +176,7 @@ class _RobotBuilder:
         self._names = names
         self._read = read
         self._arrays = arrays
+        self._categories = {category.name for category in load_categories().values()}
 
     def add_bodies(self) -> None:
         """Add each body with its geometries; those of the world are objects of their own."""
@@ -194,6 +196,12 @@ class _RobotBuilder:
             elif "joint" in entry and entry["joint"]["type"] != "fixed":
                 self._places.leave_out(number)
         self._scene.notes += self._places.notes()
+
+    def _told_category(self, geoms: Sequence[Geom]) -> str:
+        """Return the category that the first geometry's user data name, as exports have them."""
+        user = geoms[0]["user"]
+        told = self._read["texts"].get(f"category {user[1]:.0f}", "") if len(user) > 1 else ""
+        return told if told in self._categories else ""
 
     def _drawn(self, geoms: Sequence[Geom]) -> list[Geom]:
         """Return what is drawn of a body: of URDF its visuals, of MJCF the groups that are shown.
@@ -222,7 +230,7 @@ class _RobotBuilder:
                 self._names.of_asset(label),
                 parts,
                 display_name=f"{self._scene.title[:40]} {shown}",
-                category=category_of_name(label),
+                category=self._told_category(geoms) or category_of_name(label),
                 collides=any(geom["collides"] for geom in geoms),
                 source=self._scene.description,
             )

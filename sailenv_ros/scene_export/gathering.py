@@ -41,7 +41,7 @@ from sailenv_ros.world.build import build_world
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.world import World
 
-__all__ = ["exported_asset", "exported_world", "scaled_shape"]
+__all__ = ["asset_world", "exported_asset", "exported_world", "scaled_shape"]
 
 Vector3 = tuple[float, float, float]
 
@@ -85,13 +85,7 @@ def exported_world(world: World, agents: Iterable[AgentSpec] = ()) -> ExportedSc
 
 def exported_asset(asset: Asset, categories: CategoryTable) -> ExportedScene:
     """Return one asset at the origin, with what opens of it on joints."""
-    assets = AssetLibrary()
-    for one in (asset, *(part.asset for part in asset.moving)):
-        if not assets.has(one.name):
-            assets.add(one)
-    entry = {"name": identifier(asset.name)[:40], "asset": asset.name, "static": True}
-    spec = SceneSpec.model_validate({"version": 1, "settled": False, "objects": [entry]})
-    with closing(build_world(spec, assets=assets, categories=categories)) as world:
+    with closing(asset_world(asset, categories)) as world:
         scene = exported_world(world)
     whole = asset if asset.still is None else asset.still
     first, *opening = scene.bodies
@@ -102,6 +96,17 @@ def exported_asset(asset: Asset, categories: CategoryTable) -> ExportedScene:
         inertia_kg_m2=_box_inertia(first.shapes, whole.mass_kg),
     )
     return dataclasses.replace(scene, name=own.name, bodies=(own, *opening), environment=None)
+
+
+def asset_world(asset: Asset, categories: CategoryTable) -> World:
+    """Return a world with nothing but an asset, which stands still at the origin."""
+    assets = AssetLibrary()
+    for one in (asset, *(part.asset for part in asset.moving)):
+        if not assets.has(one.name):
+            assets.add(one)
+    entry = {"name": identifier(asset.name)[:40], "asset": asset.name, "static": True}
+    spec = SceneSpec.model_validate({"version": 1, "settled": False, "objects": [entry]})
+    return build_world(spec, assets=assets, categories=categories)
 
 
 def _box_inertia(shapes: Sequence[CollisionShape], mass_kg: float) -> Vector3:

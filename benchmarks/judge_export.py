@@ -1,0 +1,201 @@
+"""Has exported rooms and furniture judged by the programs that they are for, a line for each.
+
+    python3.11 -m venv judges/usd && judges/usd/bin/pip install usd-core==25.11
+    python3.11 -m venv judges/nvidia && judges/nvidia/bin/pip install usd-validation-nvidia usd-core
+    python3.12 -m venv judges/rep158 && judges/rep158/bin/pip install ros-openusd-compliance-checker
+    npm install --prefix judges gltf-validator@2.0.0-dev.3.10
+    python benchmarks/judge_export.py --judges judges room_01 generated:kitchen:17 wardrobe~hinged:7
+
+Needs sailenv_ros with MuJoCo; a judge that is not installed is left out, and said. Names with a
+tilde are pieces of furniture.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sailenv_ros.scene_export import export_asset, export_scene
+from sailenv_ros.scene_export.contents import ExportedScene
+from sailenv_ros.scene_export.gathering import asset_world, exported_world
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.world.world import World
+
+SETTLING_S = 2.0
+"""For so long MuJoCo lets things rest; none may have moved by more than 5 mm."""
+
+OPENING_S = 6.0
+
+GLTF = """
+const v = require("gltf-validator"), fs = require("fs");
+v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[1])), {maxIssues: 0}).then((r) =>
+  console.log(JSON.stringify({errors: r.issues.numErrors, warnings: r.issues.numWarnings})));
+"""
+
+Judge = Callable[["Judged"], str]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judged:
+    """An exported file, the folder of judges, what was exported, and how its world is built."""
+
+    file: Path
+    judges: Path
+    scene: ExportedScene
+    build: Callable[[], World]
+
+
+def judge_gltf(one: Judged) -> str:
+    """Count errors and warnings of Khronos' validator."""
+    if not (one.judges / "node_modules" / "gltf-validator").is_dir():
+        return "gltf-validator is not installed"
+    done = subprocess.run(
+        ["node", "-e", GLTF, str(one.file)],
+        cwd=one.judges,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    found = json.loads(done.stdout)
+    return f"gltf-validator: {found['errors']} errors, {found['warnings']} warnings"
+
+
+def judge_mujoco(one: Judged) -> str:
+    """Load, compare poses and axes with ours, let rest, and push every joint to its limits."""
+    import mujoco
+
+    model = mujoco.MjModel.from_xml_path(str(one.file))
+    data = mujoco.MjData(model)
+
+    def begin() -> None:
+        if model.nkey:
+            mujoco.mj_resetDataKeyframe(model, data, 0)
+        else:
+            mujoco.mj_resetData(model, data)
+        mujoco.mj_forward(model, data)
+
+    begin()
+    off, tilt = 0.0, 0.0
+    for body in one.scene.bodies:
+        if not body.is_outside:
+            at = data.xpos[model.body(body.name).id]
+            off = max(off, float(np.abs(at - body.pose.position_m).max()))
+        if body.joint is not None and body.joint.type != "fixed":
+            axis = body.pose.matrix()[:3, :3] @ np.array(body.joint.axis)
+            found = data.xaxis[model.joint(body.name).id]
+            tilt = max(tilt, float(np.abs(found - axis).max()))
+    before = data.xpos.copy()
+    while data.time < SETTLING_S:
+        mujoco.mj_step(model, data)
+    moved = 1000.0 * np.linalg.norm(data.xpos - before, axis=1)
+    said = f"MuJoCo: poses {off:.1e} m, axes {tilt:.1e}; after {SETTLING_S:g} s moved"
+    said += f" {moved.max():.1f} mm ({model.body(int(moved.argmax())).name})"
+    model.opt.gravity[:] = 0.0
+    found = ((body.name, body.joint) for body in one.scene.bodies)
+    joints = {name: joint for name, joint in found if joint is not None and joint.type != "fixed"}
+    results = {
+        name: _opened(mujoco, model, data, model.joint(name).id, joint.effort, begin)
+        for name, joint in joints.items()
+    }
+    if results:
+        ours = _opened_here(one.build)
+        free = sum(share > 0.99 for share in results.values())
+        apart = {name: abs(min(share, 1.0) - ours[name]) for name, share in results.items()}
+        worst = max(apart, key=lambda name: apart[name])
+        said += f"; {free} of {len(results)} joints go to their far end; shares of the way differ"
+        said += f" from ours by {apart[worst]:.3f} ({worst})"
+    return said
+
+
+def _opened(
+    mujoco: Any, model: Any, data: Any, number: int, effort: float, begin: Callable[[], None]
+) -> float:
+    """Push a joint to its far end, without gravity, harder and harder until it moves.
+
+    Returns the share of the way that it went.
+    """
+    begin()
+    at, dof = model.jnt_qposadr[number], model.jnt_dofadr[number]
+    low, high = model.jnt_range[number]
+    far = high if abs(high) > abs(low) else low
+    least = 1.5 * model.dof_frictionloss[dof]
+    force = least
+    while data.time < OPENING_S:
+        slow = data.qvel[dof] / far < 2.5 / OPENING_S
+        force = min(1.01 * force + 0.01, effort) if slow else max(0.9 * force, 0.5 * least)
+        data.qfrc_applied[dof] = np.sign(far) * force
+        mujoco.mj_step(model, data)
+    data.qfrc_applied[dof] = 0.0
+    return float(data.qpos[at] / far)
+
+
+def _opened_here(build: Callable[[], World]) -> dict[str, float]:
+    """Move each joint to its far end with our engine; return the shares of their ways."""
+    shares = {}
+    with closing(build()) as world:
+        for joint in world.joints():
+            far = joint.high if abs(joint.high) > abs(joint.low) else joint.low
+            world.set_joint(joint.id, far, 3.0)
+            world.step(round(240 * OPENING_S))
+            found = world.joint(joint.id)
+            assert found is not None
+            shares[joint.name] = found.position / far
+            world.set_joint(joint.id, joint.position)
+            world.step(1)
+    return shares
+
+
+JUDGES: dict[str, tuple[Judge, ...]] = {".glb": (judge_gltf,), ".xml": (judge_mujoco,)}
+
+
+def main() -> None:
+    """Export each scene and piece in each format, and have it judged."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="+", metavar="NAME")
+    parser.add_argument("--judges", type=Path, default=Path("judges"), help="see above")
+    parser.add_argument("--formats", nargs="+", default=list(JUDGES), choices=list(JUDGES))
+    parser.add_argument("--keep", type=Path, help="folder for the files")
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = args.keep or Path(temporary)
+        for name in args.names:
+            _judge(name, folder, args.judges.absolute(), args.formats)
+
+
+def _judge(name: str, folder: Path, judges: Path, formats: Sequence[str]) -> None:
+    library = SceneLibrary(baked_light=False)
+    if "~" in name:
+
+        def build() -> World:
+            return asset_world(library.peek_asset(name), library.categories)
+    else:
+
+        def build() -> World:
+            return library.build(name)
+
+    with closing(build()) as world:
+        scene = exported_world(world, library.agents_of(world.scene))
+    for suffix in formats:
+        file = folder / f"{name.replace(':', '_').replace('~', '_')}{suffix}"
+        begun = time.monotonic()
+        report = (export_asset if "~" in name else export_scene)(name, file, overwrite=True)
+        took = time.monotonic() - begun
+        size_mb = report.size_bytes / 1e6
+        print(f"{name} {suffix}: {report.instances} instances, {took:.1f} s, {size_mb:.1f} MB")
+        one = Judged(file=file, judges=judges, scene=scene, build=build)
+        for judge in JUDGES[suffix]:
+            print(f"  {judge(one)}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
