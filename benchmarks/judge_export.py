@@ -1,7 +1,7 @@
 """Has exported rooms and furniture judged by the programs that they are for, a line for each.
 
-    python3.11 -m venv judges/usd && judges/usd/bin/pip install usd-core==25.11
-    python3.11 -m venv judges/nvidia && judges/nvidia/bin/pip install usd-validation-nvidia usd-core
+    python3.11 -m venv judges/usd && judges/usd/bin/pip install usd-core usd-validation-nvidia
+    python3.11 -m venv judges/usd25 && judges/usd25/bin/pip install usd-core==25.11
     python3.12 -m venv judges/rep158 && judges/rep158/bin/pip install ros-openusd-compliance-checker
     npm install --prefix judges gltf-validator@2.0.0-dev.3.10
     python benchmarks/judge_export.py --judges judges room_01 generated:kitchen:17 wardrobe~hinged:7
@@ -14,9 +14,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import subprocess
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -40,6 +42,32 @@ GLTF = """
 const v = require("gltf-validator"), fs = require("fs");
 v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[1])), {maxIssues: 0}).then((r) =>
   console.log(JSON.stringify({errors: r.issues.numErrors, warnings: r.issues.numWarnings})));
+"""
+
+USD = """
+import json, sys
+from pxr import Usd, UsdGeom, UsdValidation
+stage = Usd.Stage.Open(sys.argv[1])
+validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+errors = UsdValidation.ValidationContext(validators).Validate(stage)
+cache, poses = UsdGeom.XformCache(), {}
+for prim in stage.GetDefaultPrim().GetChild("Objects").GetChildren():
+    rows = cache.GetLocalToWorldTransform(prim)
+    poses[prim.GetDisplayName()] = [list(rows.GetRow(row)) for row in range(4)]
+print(json.dumps({"validators": len(validators), "errors": [e.GetName() for e in errors],
+                  "poses": poses}))
+"""
+
+COMPLIANCE = """
+import json, sys
+from pxr import UsdUtils
+checker = UsdUtils.ComplianceChecker(arkit=False, skipARKitRootLayerCheck=True)
+# Wheels lack the definitions of shaders that it compares with; the judge of 26.11 has them.
+for rule in [r for r in checker._rules if "ShaderProperty" in type(r).__name__]:
+    checker._rules.remove(rule)
+checker.CheckCompliance(sys.argv[1])
+print(json.dumps({"errors": checker.GetErrors() + checker.GetFailedChecks(),
+                  "warnings": len(checker.GetWarnings())}))
 """
 
 Judge = Callable[["Judged"], str]
@@ -155,7 +183,71 @@ def _opened_here(build: Callable[[], World]) -> dict[str, float]:
     return shares
 
 
-JUDGES: dict[str, tuple[Judge, ...]] = {".glb": (judge_gltf,), ".xml": (judge_mujoco,)}
+def judge_usd(one: Judged) -> str:
+    """Run every validator of usd-core; compare the bodies' poses with ours."""
+    found = _python(one, "usd", USD)
+    if found is None:
+        return "usd-core is not installed"
+    ours = {body.name: body.pose.matrix() for body in one.scene.bodies}
+    assert set(found["poses"]) == set(ours)
+    off = max(float(np.abs(np.array(found["poses"][name]).T - ours[name]).max()) for name in ours)
+    said = f"usd-core, {found['validators']} validators: {len(found['errors'])} errors"
+    return f"{said} {sorted(set(found['errors'])) or ''}; poses {off:.1e} m"
+
+
+def judge_compliance(one: Judged) -> str:
+    """Run the ComplianceChecker of older versions."""
+    found = _python(one, "usd25", COMPLIANCE)
+    if found is None:
+        return "usd-core 25.11 is not installed"
+    return f"ComplianceChecker: {len(found['errors'])} errors, {found['warnings']} warnings"
+
+
+def judge_nvidia(one: Judged) -> str:
+    """Run NVIDIA's validator."""
+    program = one.judges / "usd" / "bin" / "nvidia_usd_validate"
+    if not program.is_file():
+        return "usd-validation-nvidia is not installed"
+    done = subprocess.run([program, one.file], capture_output=True, text=True, check=False)
+    lines = (done.stdout + done.stderr).splitlines()
+    counts = [line.split(":")[-2:] for line in lines if "Failures:" in line or "Errors:" in line]
+    failed = [
+        line.split(":")[-2].strip() for line in lines if re.search(r": [1-9]\d* Failures", line)
+    ]
+    told = ", ".join(f"{int(count)} {word.strip().lower()}" for word, count in counts)
+    return f"usd-validation-nvidia: {told or 'nothing found'} {sorted(failed) or ''}".rstrip()
+
+
+def judge_rep158(one: Judged) -> str:
+    """Run the checker of the draft REP 158."""
+    program = one.judges / "rep158" / "bin" / "usd-check"
+    if not program.is_file():
+        return "ros-openusd-compliance-checker is not installed"
+    command = [str(program), "--export", "--extensions", "--format", "json", str(one.file)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    found = json.loads(done.stdout)["violations"]
+    counts = Counter(one["severity"] for one in found)
+    return f"REP 158: {counts['error']} errors, {counts['warning']} warnings"
+
+
+def _python(one: Judged, folder: str, program: str) -> Any:
+    """Run a program in a judge's environment; return what it prints as JSON, None without one."""
+    python = one.judges / folder / "bin" / "python"
+    if not python.exists():
+        return None
+    command = [str(python), "-c", program, str(one.file.absolute())]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+OF_USD = (judge_usd, judge_compliance, judge_nvidia, judge_rep158)
+
+JUDGES: dict[str, tuple[Judge, ...]] = {
+    ".glb": (judge_gltf,),
+    ".xml": (judge_mujoco,),
+    ".usda": OF_USD,
+    ".usdz": OF_USD,
+}
 
 
 def main() -> None:

@@ -106,7 +106,7 @@ class ExportedBody:
         About that centre and the body's axes.
     shapes : tuple of CollisionShape
         In the body's frame, scale included.
-    friction : float
+    friction, restitution : float
     gravity : bool
         False if gravity does not pull it.
     is_outside : bool
@@ -125,6 +125,7 @@ class ExportedBody:
     inertia_kg_m2: Vector3 = (1.0, 1.0, 1.0)
     shapes: tuple[CollisionShape, ...] = ()
     friction: float = 0.5
+    restitution: float = 0.0
     gravity: bool = True
     is_outside: bool = False
 

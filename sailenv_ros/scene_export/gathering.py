@@ -187,6 +187,7 @@ def _body(body: Body, pieces: Sequence[ExportedPiece]) -> ExportedBody:
         inertia_kg_m2=(ix, iy, iz),
         shapes=tuple(scaled_shape(one, placement.scale) for one in placement.asset.collision),
         friction=placement.friction,
+        restitution=placement.restitution,
         gravity=placement.gravity,
         is_outside=placement.outside is not None,
     )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sailenv_ros.scene_export.names import FreeNames
 from sailenv_ros.types.model import ConvexShape, Mesh
 
-__all__ = ["MeshFiles", "hull_bytes", "hull_corners", "obj_bytes"]
+__all__ = ["MeshFiles", "hull_bytes", "hull_corners", "hull_triangles", "obj_bytes"]
 
 LEAST_THICKNESS_M = 2e-4
 """Hulls are made at least as thick, since programs refuse hulls without a volume [m]."""
@@ -65,8 +65,8 @@ def hull_corners(shape: ConvexShape) -> NDArray[np.float64]:
     return np.asarray(points[ConvexHull(points).vertices])
 
 
-def hull_bytes(shape: ConvexShape) -> bytes:
-    """Return a convex hull as a Wavefront file, with triangles that face outwards."""
+def hull_triangles(shape: ConvexShape) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return corners (N, 3) [m] and triangles (M, 3) of a hull, which face outwards."""
     from scipy.spatial import ConvexHull
 
     corners = hull_corners(shape)
@@ -75,6 +75,12 @@ def hull_bytes(shape: ConvexShape) -> bytes:
     a, b, c = (corners[triangles[:, k]] for k in range(3))
     inwards = np.einsum("ni,ni->n", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
     triangles[inwards] = triangles[inwards][:, ::-1]
+    return corners, triangles
+
+
+def hull_bytes(shape: ConvexShape) -> bytes:
+    """Return a convex hull as a Wavefront file."""
+    corners, triangles = hull_triangles(shape)
     faces = ("f %d %d %d\n" * len(triangles)) % tuple((triangles.reshape(-1) + 1).tolist())
     return (_rows("v", corners) + faces).encode("ascii")
 

@@ -1,0 +1,148 @@
+"""Materials as UsdPreviewSurface, with the pictures that they name.
+
+Pixar, "UsdPreviewSurface Specification" 2.6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sailenv_ros.scene_export.names import FreeNames
+from sailenv_ros.scene_export.textures import Textures, texture_slots
+from sailenv_ros.scene_export.usd_text import UsdText, number, quoted, vector
+from sailenv_ros.types.model import Material, ModelPart
+
+__all__ = ["UsdMaterials"]
+
+
+class UsdMaterials:
+    """The materials of a file.
+
+    Parameters
+    ----------
+    text : UsdText
+    path : str
+        Of the scope that holds them.
+    folder : str
+        Of the pictures, relative to the file.
+    """
+
+    def __init__(self, text: UsdText, path: str, folder: str) -> None:
+        self._text = text
+        self._path = path
+        self._folder = folder
+        self._names = FreeNames()
+        self._of: dict[int, str] = {}
+        self.textures = Textures()
+
+    def path(self, material: Material) -> str:
+        """Return the path of a material that was written."""
+        return self._of[id(material)]
+
+    def write(self, parts: Sequence[ModelPart], surfaces: Sequence[tuple[float, float]]) -> None:
+        """Write the materials of parts, and one for each friction and restitution of shapes."""
+        text = self._text
+        with text.prim("Scope", self._path.rpartition("/")[2]):
+            for part in parts:
+                if id(part.material) not in self._of:
+                    self._write(part.material)
+            for friction, restitution in surfaces:
+                name = _surface_name(friction, restitution)
+                with text.prim("Material", name, schemas=["PhysicsMaterialAPI"]):
+                    for key in ("dynamicFriction", "staticFriction"):
+                        # Here two bodies have the product of theirs, in USD the mean.
+                        text.attribute("float", f"physics:{key}", number(friction**2))
+                    text.attribute("float", "physics:restitution", number(restitution))
+
+    def physics(self, friction: float, restitution: float) -> str:
+        """Return the path of the material of a friction and a restitution."""
+        return f"{self._path}/{_surface_name(friction, restitution)}"
+
+    def _write(self, material: Material) -> None:
+        text = self._text
+        name = self._names.take(material.name or "material")
+        path = f"{self._path}/{name}"
+        self._of[id(material)] = path
+        maps = {slot: (texture, alpha) for slot, texture, alpha in texture_slots(material)}
+        with text.prim("Material", name):
+            text.connect("token", "outputs:surface", f"{path}/surface.outputs:surface")
+            with text.prim("Shader", "surface"):
+                text.attribute("uniform token", "info:id", quoted("UsdPreviewSurface"))
+                self._write_inputs(material, path, maps)
+                text.attribute("token", "outputs:surface")
+            if not maps:
+                return
+            with text.prim("Shader", "st"):
+                text.attribute("uniform token", "info:id", quoted("UsdPrimvarReader_float2"))
+                text.attribute("string", "inputs:varname", quoted("st"))
+                text.attribute("float2", "outputs:result")
+            for slot, (texture, alpha) in maps.items():
+                file = self.textures.of(texture, alpha=alpha).name
+                if slot == "base_colour":
+                    self._write_picture(path, slot, file, material.base_colour)
+                    if any(material.emission):
+                        self._write_picture(path, "emission", file, (*material.emission, 1.0))
+                elif slot == "normal":
+                    bias = (-1.0, -1.0, -1.0, 0.0)
+                    self._write_picture(path, slot, file, (2.0, 2.0, 2.0, 1.0), bias=bias)
+                else:
+                    scale = (1.0, material.roughness, material.metallic, 1.0)
+                    self._write_picture(path, slot, file, scale, bias=(0.0, 0.0, 0.0, 0.0))
+
+    def _write_inputs(self, material: Material, path: str, maps: object) -> None:
+        text = self._text
+        assert isinstance(maps, dict)
+        colour, alpha = material.base_colour[:3], material.base_colour[3]
+        textured = "base_colour" in maps
+        if textured:
+            text.connect("color3f", "inputs:diffuseColor", f"{path}/base_colour.outputs:rgb")
+        else:
+            text.attribute("color3f", "inputs:diffuseColor", vector(colour))
+        if any(material.emission) and textured:
+            text.connect("color3f", "inputs:emissiveColor", f"{path}/emission.outputs:rgb")
+        elif any(material.emission):
+            text.attribute("color3f", "inputs:emissiveColor", vector(material.emission))
+        if "metallic_roughness" in maps:
+            text.connect("float", "inputs:metallic", f"{path}/metallic_roughness.outputs:b")
+            text.connect("float", "inputs:roughness", f"{path}/metallic_roughness.outputs:g")
+        else:
+            text.attribute("float", "inputs:metallic", number(material.metallic))
+            text.attribute("float", "inputs:roughness", number(material.roughness))
+        if "normal" in maps:
+            text.connect("normal3f", "inputs:normal", f"{path}/normal.outputs:rgb")
+        if material.alpha != "opaque":
+            if textured:
+                text.connect("float", "inputs:opacity", f"{path}/base_colour.outputs:a")
+            else:
+                text.attribute("float", "inputs:opacity", number(alpha))
+        if material.alpha == "mask":
+            text.attribute("float", "inputs:opacityThreshold", number(material.alpha_cutoff))
+
+    def _write_picture(
+        self,
+        path: str,
+        name: str,
+        file: str,
+        scale: Sequence[float],
+        bias: Sequence[float] | None = None,
+    ) -> None:
+        """Write the reader of a picture; colours are sRGB, what has a bias is not."""
+        text = self._text
+        with text.prim("Shader", name):
+            text.attribute("uniform token", "info:id", quoted("UsdUVTexture"))
+            text.attribute("asset", "inputs:file", f"@./{self._folder}/{file}@")
+            text.connect("float2", "inputs:st", f"{path}/st.outputs:result")
+            text.attribute("token", "inputs:wrapS", quoted("repeat"))
+            text.attribute("token", "inputs:wrapT", quoted("repeat"))
+            space = "sRGB" if bias is None else "raw"
+            text.attribute("token", "inputs:sourceColorSpace", quoted(space))
+            text.attribute("float4", "inputs:scale", vector(scale))
+            if bias is not None and any(bias):
+                text.attribute("float4", "inputs:bias", vector(bias))
+            text.attribute("float3", "outputs:rgb")
+            for channel in "gba":
+                text.attribute("float", f"outputs:{channel}")
+
+
+def _surface_name(friction: float, restitution: float) -> str:
+    return f"friction_{round(1000.0 * friction)}_restitution_{round(1000.0 * restitution)}"
