@@ -4,6 +4,7 @@
     python3.11 -m venv judges/usd25 && judges/usd25/bin/pip install usd-core==25.11
     python3.12 -m venv judges/rep158 && judges/rep158/bin/pip install ros-openusd-compliance-checker
     npm install --prefix judges gltf-validator@2.0.0-dev.3.10
+    apt install blender python3-numpy
     python benchmarks/judge_export.py --judges judges room_01 generated:kitchen:17 wardrobe~hinged:7
 
 Needs sailenv_ros with MuJoCo; a judge that is not installed is left out, and said. Names with a
@@ -15,6 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import re
+import shutil
 import subprocess
 import tempfile
 import time
@@ -27,16 +29,22 @@ from typing import Any
 
 import numpy as np
 
+from sailenv_ros import Simulation
 from sailenv_ros.scene_export import export_asset, export_scene
 from sailenv_ros.scene_export.contents import ExportedScene
 from sailenv_ros.scene_export.gathering import asset_world, exported_world
+from sailenv_ros.scene_export.glb import write_glb
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.world.world import World
 
 SETTLING_S = 2.0
 """For so long MuJoCo lets things rest; none may have moved by more than 5 mm."""
 
 OPENING_S = 6.0
+
+LEAST_PX = 200
 
 GLTF = """
 const v = require("gltf-validator"), fs = require("fs");
@@ -75,8 +83,9 @@ Judge = Callable[["Judged"], str]
 
 @dataclass(frozen=True, kw_only=True)
 class Judged:
-    """An exported file, the folder of judges, what was exported, and how its world is built."""
+    """An exported file: of what, where judges are, what it holds, and how its world is built."""
 
+    name: str
     file: Path
     judges: Path
     scene: ExportedScene
@@ -96,6 +105,38 @@ def judge_gltf(one: Judged) -> str:
     )
     found = json.loads(done.stdout)
     return f"gltf-validator: {found['errors']} errors, {found['warnings']} warnings"
+
+
+def judge_blender(one: Judged) -> str:
+    """Compare the outlines of all objects by Blender's own rendering with our ids."""
+    program = shutil.which("blender")
+    if program is None or "~" in one.name:
+        return "Blender is not installed" if program is None else "Blender: rooms alone"
+    lens = CameraIntrinsics(width=640, height=480)
+    with closing(one.build()) as world, tempfile.TemporaryDirectory() as folder:
+        seen = exported_world(world, [AgentSpec(name="own", intrinsics=lens)])
+        file = Path(folder) / "seen.glb"
+        file.write_bytes(write_glb(seen, "").data)
+        script = str(Path(__file__).with_name("blender_ids.py"))
+        command = [program, "-b", "-P", script, "--", str(file), "own", "640", "480", folder]
+        plain = {"HOME": folder, "PATH": "/usr/bin:/bin"}  # Debian's own Python
+        subprocess.run(command, env=plain, capture_output=True, check=True)
+        theirs = np.load(Path(folder) / "ids.npy")
+    with Simulation(one.name, mode="lockstep", light="plain", width=640, height=480) as simulation:
+        ours = np.asarray(simulation.capture("instance", agent="own")["instance"])
+    # Leaves outside are cut out of a filtered picture, by each program in its way.
+    left_out = {0, *(body.instance.id for body in seen.bodies if body.is_outside)}
+    overlaps = []
+    for number in set(np.unique(ours).tolist()) - left_out:
+        first, second = ours == number, theirs == number
+        if first.sum() >= LEAST_PX:
+            overlaps.append((first & second).sum() / (first | second).sum())
+    kept = ~np.isin(ours, list(left_out))
+    differ = int((ours != theirs)[kept].sum())
+    return (
+        f"Blender: IoU of {len(overlaps)} objects of {LEAST_PX} px and more from "
+        f"{min(overlaps):.4f}; {differ} of {int(kept.sum())} pixels of objects differ"
+    )
 
 
 def judge_mujoco(one: Judged) -> str:
@@ -243,7 +284,7 @@ def _python(one: Judged, folder: str, program: str) -> Any:
 OF_USD = (judge_usd, judge_compliance, judge_nvidia, judge_rep158)
 
 JUDGES: dict[str, tuple[Judge, ...]] = {
-    ".glb": (judge_gltf,),
+    ".glb": (judge_gltf, judge_blender),
     ".xml": (judge_mujoco,),
     ".usda": OF_USD,
     ".usdz": OF_USD,
@@ -284,7 +325,7 @@ def _judge(name: str, folder: Path, judges: Path, formats: Sequence[str]) -> Non
         took = time.monotonic() - begun
         size_mb = report.size_bytes / 1e6
         print(f"{name} {suffix}: {report.instances} instances, {took:.1f} s, {size_mb:.1f} MB")
-        one = Judged(file=file, judges=judges, scene=scene, build=build)
+        one = Judged(name=name, file=file, judges=judges, scene=scene, build=build)
         for judge in JUDGES[suffix]:
             print(f"  {judge(one)}", flush=True)
 
