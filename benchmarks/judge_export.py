@@ -4,7 +4,8 @@
     python3.11 -m venv judges/usd25 && judges/usd25/bin/pip install usd-core==25.11
     python3.12 -m venv judges/rep158 && judges/rep158/bin/pip install ros-openusd-compliance-checker
     npm install --prefix judges gltf-validator@2.0.0-dev.3.10
-    apt install blender python3-numpy
+    apt install blender python3-numpy libsdformat-dev
+    g++ benchmarks/sdf_poses.cpp -o judges/sdf_poses $(pkg-config --cflags --libs sdformat12)
     python benchmarks/judge_export.py --judges judges room_01 generated:kitchen:17 wardrobe~hinged:7
 
 Needs sailenv_ros with MuJoCo; a judge that is not installed is left out, and said. Names with a
@@ -34,6 +35,7 @@ from sailenv_ros.scene_export import export_asset, export_scene
 from sailenv_ros.scene_export.contents import ExportedScene
 from sailenv_ros.scene_export.gathering import asset_world, exported_world
 from sailenv_ros.scene_export.glb import write_glb
+from sailenv_ros.scene_export.names import identifier
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
@@ -281,6 +283,21 @@ def _python(one: Judged, folder: str, program: str) -> Any:
     return json.loads(done.stdout.splitlines()[-1])
 
 
+def judge_sdformat(one: Judged) -> str:
+    """Load by Gazebo's library; compare links with bodies whose joints stand at 0."""
+    program = one.judges / "sdf_poses"
+    if not program.is_file():
+        return "sdf_poses is not built"
+    done = subprocess.run([program, one.file], capture_output=True, text=True, check=True)
+    lines = [line.split(" ") for line in done.stdout.splitlines()]
+    errors = sum(words[0] == "error" for words in lines)
+    links = {words[1]: np.array(words[2:5], np.float64) for words in lines if words[0] == "link"}
+    joints = sum(words[0] == "joint" for words in lines)
+    still = [body for body in one.scene.bodies if body.joint is None and not body.is_outside]
+    off = max(np.abs(links[identifier(b.name)] - b.pose.position_m).max() for b in still)
+    return f"sdformat 12: {errors} errors, {len(links)} links, {joints} joints; places {off:.0e} m"
+
+
 OF_USD = (judge_usd, judge_compliance, judge_nvidia, judge_rep158)
 
 JUDGES: dict[str, tuple[Judge, ...]] = {
@@ -288,6 +305,7 @@ JUDGES: dict[str, tuple[Judge, ...]] = {
     ".xml": (judge_mujoco,),
     ".usda": OF_USD,
     ".usdz": OF_USD,
+    ".sdf": (judge_sdformat,),
 }
 
 
