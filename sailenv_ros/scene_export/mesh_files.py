@@ -57,7 +57,7 @@ def hull_corners(shape: ConvexShape) -> NDArray[np.float64]:
 
     points = np.asarray(shape.points, np.float64)
     spread = points - points.mean(axis=0)
-    axes = np.linalg.svd(spread, full_matrices=False)[2]
+    axes = np.linalg.eigh(spread.T @ spread)[1].T
     thin = [axis for axis in axes if np.ptp(spread @ axis) < LEAST_THICKNESS_M]
     for axis in thin:
         step = 0.5 * LEAST_THICKNESS_M * axis

@@ -115,9 +115,9 @@ class _MjcfWriter:
             self._add_piece(node, piece, body)
         for number, shape in enumerate(body.shapes):
             labels = {"group": COLLISION_GROUP, "user": _user(body.pieces[0])}
-            add_shape(
-                node, shape, self.assets, f"shape {number} of {body.name}", body.friction, labels
-            )
+            name = f"shape {number} of {body.name}"
+            rolls = not body.static
+            add_shape(node, shape, self.assets, name, body.friction, labels, rolls=rolls)
         for other in self._carried.get(body.name, ()):
             self._add_body(node, other)
 

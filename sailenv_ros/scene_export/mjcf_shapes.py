@@ -15,6 +15,7 @@ from sailenv_ros.types.model import (
     CylinderShape,
     SphereShape,
 )
+from sailenv_ros.world.body_creation import ROLLING_FRICTION
 
 __all__ = ["add_shape"]
 
@@ -26,6 +27,8 @@ def add_shape(
     name: str,
     friction: float,
     labels: Mapping[str, str],
+    *,
+    rolls: bool,
 ) -> None:
     """Add a collision shape to a body.
 
@@ -42,8 +45,13 @@ def add_shape(
         is right for two alike.
     labels : mapping of str to str
         Attributes that all geometries have.
+    rolls : bool
+        Whether it can roll and spin, which friction then brakes: of what moves.
     """
-    entry = {"name": name, **labels, "friction": f"{numbers((friction**2,))} 0.005 0.0001"}
+    entry = {"name": name, **labels}
+    entry["friction"] = numbers((friction**2, ROLLING_FRICTION, ROLLING_FRICTION))
+    if rolls:
+        entry["condim"] = "6"
     if isinstance(shape, BoxShape):
         x, y, z, w = shape.orientation_xyzw
         entry |= {"type": "box", "size": numbers(shape.half_extents_m)}

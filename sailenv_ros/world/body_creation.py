@@ -8,9 +8,10 @@ from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.collision import build_collision
 from sailenv_ros.world.placement import Placement
 
-__all__ = ["create_rigid_body", "mass_of"]
+__all__ = ["ROLLING_FRICTION", "create_rigid_body", "mass_of"]
 
-_ROLLING_FRICTION = 0.002
+ROLLING_FRICTION = 0.002
+"""Torque against rolling and spinning over the force that presses [m]."""
 
 
 def create_rigid_body(
@@ -56,8 +57,8 @@ def create_rigid_body(
         # Bullet's own default of 0.04 /s would make free fall and free flight inexact.
         linearDamping=0.0,
         angularDamping=0.0,
-        rollingFriction=_ROLLING_FRICTION if mass_kg else 0.0,
-        spinningFriction=_ROLLING_FRICTION if mass_kg else 0.0,
+        rollingFriction=ROLLING_FRICTION if mass_kg else 0.0,
+        spinningFriction=ROLLING_FRICTION if mass_kg else 0.0,
     )
     if not placement.static:
         # What has come to rest sleeps: it keeps the very same pose, and costs nothing.

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from sailenv_ros.errors import PhysicsError
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.world.body_creation import ROLLING_FRICTION
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.collision import build_collision
 from sailenv_ros.world.kinematics import composed
@@ -252,8 +253,8 @@ class JointTree:
             restitution=placement.restitution,
             linearDamping=0.0,
             angularDamping=0.0,
-            rollingFriction=0.002,
-            spinningFriction=0.002,
+            rollingFriction=ROLLING_FRICTION,
+            spinningFriction=ROLLING_FRICTION,
             jointDamping=spec.damping,
         )
         low, high = UNLIMITED if spec.limits is None else spec.limits
