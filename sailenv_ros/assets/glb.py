@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import trimesh
     from PIL import Image
 
-__all__ = ["DRAWN", "glb_bytes", "picture_bytes", "read_glb"]
+__all__ = ["DRAWN", "glb_bytes", "read_glb"]
 
 DRAWN = "part_"
 """Begins the names that `glb_bytes` gives meshes; their places in the model follow."""
@@ -124,20 +124,14 @@ def _picture(texture: Texture | None, *, lossless: bool = False) -> Image.Image 
         return None
     from PIL import Image
 
-    return Image.open(io.BytesIO(picture_bytes(texture, lossless=lossless)))
-
-
-def picture_bytes(texture: Texture, *, lossless: bool = False) -> bytes:
-    """Return a texture as the bytes of a JPEG file, or with its alpha as those of a PNG."""
-    from PIL import Image
-
     picture = Image.fromarray(np.asarray(texture)).convert("RGBA" if lossless else "RGB")
     stored = io.BytesIO()
     if lossless:
         picture.save(stored, format="PNG")
     else:
         picture.save(stored, format="JPEG", quality=JPEG_QUALITY, subsampling=0)
-    return stored.getvalue()
+    stored.seek(0)
+    return Image.open(stored)
 
 
 def triangle_count(parts: Sequence[ModelPart]) -> int:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from sailenv_ros.assets.glb import picture_bytes
+import numpy as np
+
+from sailenv_ros.assets.glb import JPEG_QUALITY
 from sailenv_ros.types.model import Material, Texture
 
 __all__ = ["SLOTS", "Picture", "Textures", "texture_slots"]
@@ -62,9 +65,9 @@ class Textures:
             Whether its alpha is seen.
         """
         lossless = alpha or self._png
-        key = id(texture), lossless
+        key = id(texture), alpha
         if key not in self._of:
-            data = picture_bytes(texture, lossless=lossless)
+            data = _stored(texture, lossless=lossless, alpha=alpha)
             stem, kind = hashlib.sha256(data).hexdigest()[:16], "png" if lossless else "jpg"
             mime = "image/png" if lossless else "image/jpeg"
             made = Picture(name=f"{stem}.{kind}", data=data, mime_type=mime)
@@ -80,3 +83,16 @@ def texture_slots(material: Material) -> Iterator[tuple[str, Texture, bool]]:
         texture: Texture | None = getattr(material, f"{slot}_texture")
         if texture is not None:
             yield slot, texture, seen and slot == "base_colour"
+
+
+def _stored(texture: Texture, *, lossless: bool, alpha: bool) -> bytes:
+    """Return the bytes of a JPEG file, of the quality of those in packs, or of a PNG."""
+    from PIL import Image
+
+    picture = Image.fromarray(np.asarray(texture)).convert("RGBA" if alpha else "RGB")
+    stored = io.BytesIO()
+    if lossless:
+        picture.save(stored, format="PNG")
+    else:
+        picture.save(stored, format="JPEG", quality=JPEG_QUALITY, subsampling=0)
+    return stored.getvalue()
