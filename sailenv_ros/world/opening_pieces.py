@@ -83,11 +83,12 @@ def _entry(piece: ObjectSpec, part: MovingPart) -> ObjectSpec:
         raise InvalidRequest(
             f"name of {part.name!r} of {piece.name!r}", name, f"at most {MAX_NAME} characters"
         )
+    (x, y, z), (sx, sy, sz) = part.origin_m, piece.scale
     joint = JointSpec(
         type=part.type,
         parent=piece.name,
         axis=part.axis,
-        origin=part.origin_m,
+        origin=(x * sx, y * sy, z * sz),
         limits=_scaled(part, piece.scale),
         friction=part.friction,
         damping=part.damping,

@@ -274,6 +274,18 @@ def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
         assert {n for n, d in named.items() if not d.stands and not d.instance.is_part} == moving
 
 
+def test_a_door_of_a_larger_piece_turns_about_its_own_edge() -> None:
+    """What lies on the axis of the piece at scale 1 lies on that of the larger one."""
+    name = "wardrobe~hinged:7"
+    part = next(one for one in made("wardrobe", "hinged", 7).asset.moving if one.type == "hinge")
+    with closing(world_of({"name": "w", "asset": name, "static": True, "scale": 1.5})) as world:
+        door = next(body for body in world.bodies if body.placement.name == f"w {part.name}")
+        hinge = np.append(1.5 * np.asarray(part.origin_m), 1.0)
+        before = door.world_from_body() @ hinge
+        world.set_joint(world.find(f"w {part.name}"), 1.0)
+        np.testing.assert_allclose(door.world_from_body() @ hinge, before, atol=1e-9)
+
+
 def test_a_piece_that_moves_freely_keeps_itself_shut() -> None:
     """In one body, whose parts are labelled all the same; nothing is lost of its mass."""
     name = "nightstand~drawers:1"
