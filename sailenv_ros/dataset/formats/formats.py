@@ -33,6 +33,7 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         "mcap": "mcap.McapExport",
         "colmap": "colmap.ColmapExport",
         "nerfstudio": "nerfstudio.NerfstudioExport",
+        "vqa": "vqa.VqaExport",
     }
 )
 """Module in this folder and class of each format, by its name."""

@@ -134,4 +134,5 @@ def test_which_formats_have_something_to_merge() -> None:
     """Not those that write one file for each clip or shard alone."""
     assert {name for name in FORMATS if merges(format_class(name))} == {
         "png", "coco", "kitti", "flo", "bop", "yolo", "yolo_segments", "voc", "movi", "lerobot",
+        "vqa",
     }  # fmt: skip

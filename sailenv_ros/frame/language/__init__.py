@@ -1,0 +1,24 @@
+"""Truth in words: what stands in a frame and how, expressions for one object, questions, answers.
+
+Data types and pure functions on a `Frame`. Every sentence comes with the numbers it follows from.
+"""
+
+from __future__ import annotations
+
+from sailenv_ros.frame.language.questions import QUESTION_KINDS, Question, questions
+from sailenv_ros.frame.language.referring import Referring, referring_expressions
+from sailenv_ros.frame.language.scene_graph import RELATIONS, Relation, SceneGraph, scene_graph
+from sailenv_ros.frame.language.seen_objects import SeenObject
+
+__all__ = [
+    "QUESTION_KINDS",
+    "RELATIONS",
+    "Question",
+    "Referring",
+    "Relation",
+    "SceneGraph",
+    "SeenObject",
+    "questions",
+    "referring_expressions",
+    "scene_graph",
+]

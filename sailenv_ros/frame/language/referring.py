@@ -1,0 +1,117 @@
+"""Expressions that are true of exactly one object that a frame shows.
+
+An expression is a category and a condition. It is kept only if the condition holds for its object,
+and clearly does not for every other object of the category, those that are hardly seen included.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from sailenv_ros.frame.language.scene_graph import FURTHER, SceneGraph, holds
+from sailenv_ros.frame.language.seen_objects import SeenObject
+from sailenv_ros.frame.language.wording import named
+
+__all__ = ["Referring", "referring_expressions"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Referring:
+    """An expression and the one object that it is true of.
+
+    Attributes
+    ----------
+    text : str
+        ``the cup on the table``
+    object : int
+        Id of the object.
+    category : str
+    values : mapping of int to mapping of str to float
+        Numbers for each object of the category, by id: they tell it from the others.
+    """
+
+    text: str
+    object: int
+    category: str
+    values: Mapping[int, Mapping[str, float]]
+
+
+def referring_expressions(graph: SceneGraph) -> tuple[Referring, ...]:
+    """Return the expressions that are true of one object each, in the order of the ids."""
+    return tuple(
+        found
+        for target in graph.clear
+        if target.category not in graph.parts
+        for found in _of(target, graph)
+        if found is not None
+    )
+
+
+def _of(target: SeenObject, graph: SceneGraph) -> Iterator[Referring | None]:
+    rivals = [
+        one
+        for one in graph.objects.values()
+        if one.category == target.category and one.id != target.id
+    ]
+    name = named(target.category)
+    if not rivals:
+        values = {target.id: {"pixels": float(target.pixels)}}
+        yield Referring(text=name, object=target.id, category=target.category, values=values)
+        return
+    yield _foremost(target, rivals, f"the {target.category} nearest to the camera", _distance, 1)
+    yield _foremost(target, rivals, f"the tallest {target.category}", _height, -1)
+    if all(one.clear for one in rivals):
+        for kind, word in (("left of", "leftmost"), ("right of", "rightmost")):
+            if all(holds(kind, target, one, graph.width) is not None for one in rivals):
+                values = {one.id: {"left_px": float(one.box[0]), "right_px": float(one.box[2])}
+                          for one in (target, *rivals)}  # fmt: skip
+                yield Referring(
+                    text=f"the {word} {target.category}",
+                    object=target.id,
+                    category=target.category,
+                    values=values,
+                )
+    for relation in graph.of("on", target.id):
+        carrier = graph.objects[relation.object]
+        same = [one for one in graph.objects.values() if one.category == carrier.category]
+        alone = len(same) == 1 and carrier.category not in graph.parts
+        # What lies on it may look as if it did not; far from it is clear.
+        if alone and all(_is_off(one, carrier) for one in rivals):
+            yield Referring(
+                text=f"{name} on {named(carrier.category)}",
+                object=target.id,
+                category=target.category,
+                values={one.id: {"bottom_m": one.bottom_m, "top_m": carrier.top_m}
+                        for one in (target, *rivals)},
+            )  # fmt: skip
+
+
+def _foremost(
+    target: SeenObject,
+    rivals: list[SeenObject],
+    text: str,
+    measure: Callable[[SeenObject], float],
+    sign: int,
+) -> Referring | None:
+    """Return an expression for the one with the least (1) or greatest (-1) of a measure."""
+    own = measure(target)
+    others = [measure(one) for one in rivals]
+    least = min(others) >= own * FURTHER if sign > 0 else max(others) * FURTHER <= own
+    if not least:
+        return None
+    values = {one.id: {"value_m": measure(one)} for one in (target, *rivals)}
+    return Referring(text=text, object=target.id, category=target.category, values=values)
+
+
+def _distance(one: SeenObject) -> float:
+    return one.distance_m
+
+
+def _height(one: SeenObject) -> float:
+    return one.height_m
+
+
+def _is_off(one: SeenObject, carrier: SeenObject) -> bool:
+    """Return whether something clearly lies elsewhere: its bottom is far from the carrier's top."""
+    return abs(one.bottom_m - carrier.top_m) > 0.1

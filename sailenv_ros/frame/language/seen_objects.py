@@ -1,0 +1,147 @@
+"""The objects that a frame shows, each with what can be said of it alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.truth.object_table import ObjectTable
+from sailenv_ros.types.labels import UNLABELLED_CATEGORY
+
+__all__ = ["LEAST_SHARE", "SeenObject", "seen_objects", "seen_parts"]
+
+LEAST_SHARE = 2e-4
+"""Share of the picture from which an object is seen; with less it may be there, and nothing is said
+that would be wrong if it were, or if it were not."""
+
+STRUCTURE = frozenset(
+    {"wall", "floor", "ceiling", "skirting", "window", "door", "curtain", "outside", "plane"}
+)
+"""Categories of parts of rooms, which are not spoken of."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class SeenObject:
+    """An object that a frame shows, with all its parts.
+
+    Attributes
+    ----------
+    id : int
+    name, category : str
+    pixels : int
+        Visible ones, of its parts too.
+    box : (4,) tuple of int
+        Left, top, right, bottom of these, the last ones included [px].
+    clear : bool
+        Whether it takes `LEAST_SHARE` of the picture.
+    distance_m : float
+        From the camera to the middle of the box around its mesh [m].
+    corners_m : (8, 3) float64
+        Of that box, in the world [m].
+    size_m : (3,) float64
+        Of that box, along the object's own axes [m].
+    turn : (3, 3) float64
+        Rotation world-from-object.
+    """
+
+    id: int
+    name: str
+    category: str
+    pixels: int
+    box: tuple[int, int, int, int]
+    clear: bool
+    distance_m: float
+    corners_m: NDArray[np.float64]
+    size_m: NDArray[np.float64]
+    turn: NDArray[np.float64]
+
+    @property
+    def bottom_m(self) -> float:
+        """Height of its lowest point in the world [m]."""
+        return float(self.corners_m[:, 2].min())
+
+    @property
+    def top_m(self) -> float:
+        """Height of its highest point in the world [m]."""
+        return float(self.corners_m[:, 2].max())
+
+    @property
+    def height_m(self) -> float:
+        """Extent along the world's z axis [m]."""
+        return self.top_m - self.bottom_m
+
+    @property
+    def middle_m(self) -> NDArray[np.float64]:
+        """(3,) middle of its box in the world [m]."""
+        return np.asarray(self.corners_m.mean(axis=0))
+
+
+def seen_objects(frame: Frame) -> tuple[SeenObject, ...]:
+    """Return the objects that a frame shows, by their ids; parts of rooms are left out.
+
+    Raises
+    ------
+    InvalidRequest
+        If the frame has no view ``instance``, or no states.
+    """
+    if "instance" not in frame.views or frame.states is None:
+        raise InvalidRequest("views", tuple(frame.views), "a frame with 'instance' and states")
+    table = frame.objects
+    row_of = {id_: row for row, id_ in enumerate(table.ids.tolist())}
+    owned: dict[int, list[int]] = {}
+    for row in np.flatnonzero(table.visible_pixels).tolist():
+        owned.setdefault(_whole_of(table, row, row_of), []).append(row)
+    least = LEAST_SHARE * frame.views["instance"].size
+    found = []
+    for id_, rows in sorted(owned.items()):
+        row = row_of[id_]
+        labelled = table.category_ids[row] not in (0, UNLABELLED_CATEGORY)
+        if not labelled or table.categories[row] in STRUCTURE:
+            continue
+        boxes = table.visible_boxes[rows]
+        left, top = boxes[:, :2].min(axis=0).tolist()
+        right, bottom = boxes[:, 2:].max(axis=0).tolist()
+        pixels = int(table.visible_pixels[rows].sum())
+        found.append(
+            SeenObject(
+                id=id_,
+                name=table.names[row],
+                category=table.categories[row],
+                pixels=pixels,
+                box=(left, top, right, bottom),
+                clear=pixels >= least,
+                distance_m=float(table.distances[row]),
+                corners_m=table.corners[row],
+                size_m=table.box_sizes[row],
+                turn=_rotation(table.world_from_object[row]),
+            )
+        )
+    return tuple(found)
+
+
+def seen_parts(frame: Frame) -> frozenset[str]:
+    """Return the categories of visible parts, such as the books in a bookcase.
+
+    They are no objects of their own here, so that nothing is said of how many there are.
+    """
+    table = frame.objects
+    rows = np.flatnonzero(np.asarray(table.visible_pixels) * (table.parents != 0))
+    return frozenset(table.categories[row] for row in rows.tolist())
+
+
+def _whole_of(table: ObjectTable, row: int, row_of: Mapping[int, int]) -> int:
+    """Return the id of the object that a row is a part of, or its own."""
+    while (parent := int(table.parents[row])) in row_of:
+        row = row_of[parent]
+    return int(table.ids[row])
+
+
+def _rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the rotation of a pose whose axes may be scaled."""
+    axes = matrix[:3, :3]
+    return np.asarray(axes / np.linalg.norm(axes, axis=0))
