@@ -22,7 +22,7 @@ that would be wrong if it were, or if it were not."""
 STRUCTURE = frozenset(
     {"wall", "floor", "ceiling", "skirting", "window", "door", "curtain", "outside", "plane"}
 )
-"""Categories of parts of rooms, which are not spoken of."""
+"""Categories of parts of rooms, which no sentence names."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
