@@ -32,7 +32,7 @@ STOPPED, PLAYING = SimulationState.STATE_STOPPED, SimulationState.STATE_PLAYING
 PAUSED, NO_WORLD = SimulationState.STATE_PAUSED, SimulationState.STATE_NO_WORLD
 STEP_NS = 1e9 / 240
 
-WORLDS = ("optical", "solid_benchmark", "empty")
+WORLDS = ("optical", "solid_benchmark", "void")
 NAMES = ("a", "b", "c", "a_1")
 SPACES = ("", "", "r1", "r1/deep")
 MOST_SPAWNED = 6
@@ -303,7 +303,7 @@ class _Storm:
         loaded = self._model.state != NO_WORLD
         code = OK if loaded else srv.UnloadWorld.Response.NO_WORLD_LOADED
         self._send("UnloadWorld", code)
-        self._model.begin("empty", NO_WORLD)
+        self._model.begin("void", NO_WORLD)
 
     def _do_get_current_world(self) -> None:
         loaded = self._model.state != NO_WORLD

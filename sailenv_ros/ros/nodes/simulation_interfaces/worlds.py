@@ -24,7 +24,7 @@ __all__ = ["get_available_worlds", "get_current_world", "load_world", "unload_wo
 SCENE_SCHEME = "sailenv://scene/"
 """Begin of the URI of a scene."""
 
-EMPTY = "empty"
+EMPTY = "void"
 """Name of the scene that there is while no world is loaded."""
 
 GENERATED_TAG = "generated"
