@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 import pytest
@@ -308,22 +309,24 @@ def test_steps_tell_how_far_they_are(call: StandardClient, probe: Probe) -> None
     until(client.server_is_ready, "the action")
     heard: list[Any] = []
 
-    def begun(steps: int) -> Any:
+    def begun(steps: int, timeout_s: float = 20.0) -> Any:
         asked = SimulateSteps.Goal(steps=steps)
         sending = client.send_goal_async(
             asked, feedback_callback=lambda message: heard.append(message.feedback)
         )
-        until(sending.done, "the goal to be accepted")
+        until(sending.done, "the goal to be accepted", timeout_s)
         return sending.result()
 
-    def ended(goal: Any) -> Any:
+    def ended(goal: Any, timeout_s: float = 20.0) -> Any:
         result = goal.get_result_async()
-        until(result.done, "the result")
+        until(result.done, "the result", timeout_s)
         return result.result()
 
     def stepped() -> bool:
-        assert ended(begun(1)).result.result.result == OK
-        return bool(heard)
+        # DDS drops an answer whose reader the server has not found yet.
+        with suppress(AssertionError):
+            return ended(begun(1, 2.0), 2.0).result.result.result == OK and bool(heard)
+        return False
 
     # That the action has found its listener is known from what it hears.
     until(stepped, "the first feedback")
