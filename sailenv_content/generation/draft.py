@@ -51,12 +51,12 @@ class Draft:
 
     def take_out(self, names: Sequence[str]) -> bool:
         """Take out the least of some objects with what lies on it; say if that can be done."""
-        blamed = {self._owners().get(name, name) for name in names}
+        owners = self._owners()
+        blamed = {owners.get(name, name) for name in names}
         present = [item for item in self.items if item.name in blamed]
         if not present:
             # Taken out already, with what carried it, or a part of the room alone.
-            known = any(name in blamed or name in names for name in self._gone)
-            return known
+            return not self._gone.isdisjoint(blamed.union(names))
         loose = [item for item in present if not item.needed]
         if not loose:
             return False
@@ -68,7 +68,7 @@ class Draft:
             if not more:
                 break
             gone |= more
-        self._gone |= gone | {part for part, owner in self._owners().items() if owner in gone}
+        self._gone |= gone | {part for part, owner in owners.items() if owner in gone}
         self.items = [item for item in self.items if item.name not in gone]
         return True
 

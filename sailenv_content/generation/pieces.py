@@ -15,6 +15,7 @@ from sailenv_content.families.materials import (
     METAL_NAMES,
     WOODS,
     PieceMaterial,
+    metal,
 )
 from sailenv_content.families.names import PieceName, parsed
 from sailenv_content.families.registry import family_named
@@ -32,7 +33,7 @@ DRAWS = 12
 SEEDED = 0.75
 """Share of pieces by seeds where a rule names objects of the catalogue too."""
 
-_METALS = ("chrome", "steel", "brass", "coated #26272a")
+_METALS = tuple(metal(name).surface.name for name in ("chrome", "steel", "brass", "#26272a"))
 _METAL_WEIGHT = 0.5
 
 

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.space.outlines import Solid
-from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import (
     BoxShape,
     CollisionShape,
@@ -16,6 +15,7 @@ from sailenv_ros.types.model import (
     CylinderShape,
     SphereShape,
 )
+from sailenv_ros.types.shapes import box_corners
 
 __all__ = ["MOST_CORNERS", "collision_box", "solid_distance_m", "solids_overlap"]
 
@@ -85,12 +85,11 @@ def _box_of(shape: CollisionShape, factors: Doubles) -> tuple[Doubles, Doubles]:
     elif isinstance(shape, CylinderShape):
         half = np.array([shape.radius_m, shape.radius_m, 0.5 * shape.height_m]) * factors
         middle = np.asarray(shape.centre_m) * factors
-    elif isinstance(shape, BoxShape):
-        turn = Pose(orientation_xyzw=shape.orientation_xyzw).matrix()[:3, :3]
-        half = np.abs(turn) @ np.asarray(shape.half_extents_m) * factors
-        middle = np.asarray(shape.centre_m) * factors
     else:
-        points = shape.points if isinstance(shape, ConvexShape) else shape.positions
+        if isinstance(shape, BoxShape):
+            points = box_corners(shape)
+        else:
+            points = shape.points if isinstance(shape, ConvexShape) else shape.positions
         points = points * factors
         return np.asarray(points.min(axis=0)), np.asarray(points.max(axis=0))
     return middle - half, middle + half

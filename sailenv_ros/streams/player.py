@@ -7,7 +7,7 @@ begins the episode again where it is not; what comes out is the same.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
 from sailenv_ros.errors import InvalidState
@@ -19,8 +19,10 @@ from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.streams.course import Course
 from sailenv_ros.streams.plan import Place, StreamPlan
 from sailenv_ros.streams.staging import Stage
+from sailenv_ros.streams.state import DriftRecord
 from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["EYE", "Player"]
@@ -65,11 +67,11 @@ class Player:
         self._core: SynchronousSimulation | None = None
         self._stage: Stage | None = None
         self._at: Place | None = None
-        self._drawn: Frame | None = None
+        self._drawn: tuple[Frame, Mapping[str, DriftRecord]] | None = None
         self._info: tuple[SceneInfo, SceneInfo] | None = None
 
-    def frame(self, place: Place) -> Frame:
-        """Return the frame at a place.
+    def frame(self, place: Place) -> tuple[Frame, Mapping[str, DriftRecord]]:
+        """Return the frame at a place, and what each drift did to it.
 
         Raises
         ------
@@ -161,16 +163,18 @@ class Player:
     def _shown(self, frame: int) -> int:
         return frame if self._drift_at is None else self._drift_at
 
-    def _draw(self) -> Frame:
+    def _draw(self) -> tuple[Frame, Mapping[str, DriftRecord]]:
         core = self._world
         assert self._at is not None
         assert self._stage is not None
         pose = _swayed(self._stage.eye(), self._at, self._due)
         core.set_pose(self._stage.mounted(pose), agent=EYE)
-        self._drawn = self._told(core.capture(self._views, agent=EYE), self._at)
+        _, records = self._course.state(self._shown(self._at.frame), self._seed)
+        frame = self._told(core.capture(self._views, agent=EYE), self._at, records)
+        self._drawn = frame, records
         return self._drawn
 
-    def _told(self, frame: Frame, place: Place) -> Frame:
+    def _told(self, frame: Frame, place: Place, records: Mapping[str, DriftRecord]) -> Frame:
         """Return a frame with numbers and times of the stream, whatever was played before it."""
         stamp_ns, told_ns = (
             round(frame * 1e9 / self._course.rate) for frame in (place.frame, _tick(place))
@@ -183,7 +187,6 @@ class Player:
                 scenes=(frame.info.scene,), seed=self._seed,
             )  # fmt: skip
             self._info = frame.info, told
-        _, records = self._course.state(self._shown(place.frame), self._seed)
         stream = {
             "number": place.frame,
             "room": place.room,
@@ -206,8 +209,8 @@ def _swayed(pose: Pose, place: Place, due: Sequence[int]) -> Pose:
     """Return the pose of a camera that is carried by somebody who walks."""
     if place.habit != "carry":
         return pose
-    phase = 2.0 * math.pi * SWAY_HZ * due[place.offset] / 240.0
+    phase = 2.0 * math.pi * SWAY_HZ * due[place.offset] / STEPS_PER_SECOND
     sway = Pose.from_rpy_deg(
         (0.0, 0.0, SWAY_M * math.sin(phase)), (SWAY_DEG * math.sin(phase / 2.0), 0.0, 0.0)
     )
-    return Pose.from_matrix(pose.matrix() @ sway.matrix())
+    return pose.carried(sway)

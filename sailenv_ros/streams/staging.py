@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.streams.course import Course
-from sailenv_ros.streams.state import Colour, StreamState
+from sailenv_ros.streams.state import Colour, StreamState, tinted
 from sailenv_ros.types.geometry import Pose, look_at
-from sailenv_ros.types.labels import Instance
+from sailenv_ros.types.labels import ROOM_PARTS, Instance
 from sailenv_ros.types.lights import Light
 
 __all__ = ["Stage"]
@@ -70,7 +70,7 @@ class Stage:
                     core.set_material(one.id, colour=state.paint)
         present = self._objects()
         if state.worn:
-            tint = _mixed(_WORN, state.worn)
+            tint = tinted(_WORN, state.worn)
             for one in present:
                 if one.static:
                     core.set_material(one.id, tint=tint)
@@ -125,8 +125,7 @@ class Stage:
 
     def mounted(self, pose: Pose) -> Pose:
         """Return the pose of a camera on what carries it."""
-        mount = Pose.from_rpy_deg(self._state.mount_m, self._state.mount_rpy_deg)
-        return Pose.from_matrix(pose.matrix() @ mount.matrix())
+        return pose.carried(Pose.from_rpy_deg(self._state.mount_m, self._state.mount_rpy_deg))
 
     # -- inside ------------------------------------------------------------------------------
 
@@ -135,9 +134,10 @@ class Stage:
 
     def _objects(self) -> list[Instance]:
         """Return what has a place of its own in the room, parts left out."""
-        parts = {"wall", "floor", "ceiling", "skirting", "window", "door", "curtain", "outside"}
         return [
-            one for one in self._core.info.instances if not one.parent and one.category not in parts
+            one
+            for one in self._core.info.instances
+            if not one.parent and one.category not in ROOM_PARTS
         ]
 
 
@@ -152,9 +152,3 @@ def _times(colour: Colour, factors: Colour) -> Colour:
 
 def _scaled(colour: Colour, factor: float) -> Colour:
     return _times(colour, (factor,) * 3)
-
-
-def _mixed(colour: Colour, share: float) -> Colour:
-    """Return white mixed with a colour."""
-    red, green, blue = (1.0 + share * (part - 1.0) for part in colour)
-    return red, green, blue

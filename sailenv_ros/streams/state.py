@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol, TypeAlias
 
-__all__ = ["Drift", "DriftRecord", "DriftValue", "StreamState", "progress"]
+__all__ = ["Drift", "DriftRecord", "DriftValue", "StreamState", "progress", "tinted"]
 
 DriftValue: TypeAlias = float | tuple[float, ...] | tuple[str, ...]
 
@@ -90,6 +90,12 @@ class Drift(Protocol):
         seed : int
             Of the stream; the only source of chance.
         """
+
+
+def tinted(colour: Colour, share: float) -> Colour:
+    """Return factors between none, at a share of 0, and a colour, at 1."""
+    red, green, blue = (1.0 + share * (part - 1.0) for part in colour)
+    return red, green, blue
 
 
 def progress(frame: int, onset: int, over: int) -> float:

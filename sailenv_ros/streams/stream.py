@@ -245,14 +245,13 @@ class Stream(Sequence[Any]):
         if self._player is None or self._player[0] != os.getpid():
             player = Player(self._course, self._plan, self._seed, self._views, self._drift_at)
             self._player = os.getpid(), player
-        frame = self._player[1].frame(place)
-        shown = number if self._drift_at is None else self._drift_at
+        frame, drift = self._player[1].frame(place)
         made = StreamFrame(
             number=number,
             room=place.room,
             episode=place.episode,
             habit=place.habit,
-            drift=self._course.state(shown, self._seed)[1],
+            drift=drift,
             frame=frame,
         )
         return made.arrays() if self._as_arrays else made

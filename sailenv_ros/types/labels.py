@@ -21,6 +21,7 @@ __all__ = [
     "MAX_CATEGORY_ID",
     "MAX_INSTANCE_ID",
     "PART_MARK",
+    "ROOM_PARTS",
     "UNLABELLED_CATEGORY",
     "Category",
     "CategoryTable",
@@ -46,6 +47,11 @@ The object ``bed`` of the asset ``bed_02`` has the part ``bed/left pillow`` of t
 """
 
 MAX_CATEGORY_ID = 65535
+
+ROOM_PARTS = frozenset(
+    {"wall", "floor", "ceiling", "skirting", "window", "door", "curtain", "outside"}
+)
+"""Names of the categories of parts of rooms: what else there is stands in one."""
 
 Vector3 = tuple[float, float, float]
 

@@ -22,6 +22,7 @@ from sailenv_ros.space import FreeSpace
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import ROOM_PARTS
 from sailenv_ros.types.snapshot import WorldSnapshot
 
 __all__ = ["CameraRule", "CameraView", "RuleSettings", "ViewScene", "camera_rule"]
@@ -93,11 +94,10 @@ class ViewScene(ABC):
     @cached_property
     def object_ids(self) -> frozenset[int]:
         """Ids of what stands in the scene: not of floors, walls and other parts of rooms."""
-        parts = {"floor", "wall", "ceiling", "skirting", "window", "door", "curtain", "outside"}
         found = {d.instance.id: d.instance for d in self.snapshot.contents.instances}
         # The door of a cupboard is no door of a room.
         return frozenset(
-            i.id for i in found.values() if found.get(i.parent, i).category not in parts
+            i.id for i in found.values() if found.get(i.parent, i).category not in ROOM_PARTS
         )
 
     def seen(self, pose: Pose, cover: float) -> Mapping[int, int]:

@@ -13,11 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import sailenv_ros.streams as streams
-from sailenv_ros.dataset.streams.making import PART_FRAMES
+from sailenv_ros.dataset.streams.making import PART_FRAMES, record_parts
 from sailenv_ros.dataset.streams.parts import StreamFolder
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.lockstep import FrameRecorder
-from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation.generated_scenes import generation_state
 from sailenv_ros.streams import Course
 from sailenv_ros.streams.course import MOST_FRAMES
@@ -107,21 +106,15 @@ def _make_parts(
     job: EndlessJob, folder: StreamFolder, begin: int, on_frame: Callable[[int], None]
 ) -> None:
     with streams.open(job.course, seed=job.seed, views=job.views) as stream:
-        for first in range(begin, job.frames, PART_FRAMES):
-            with folder.part() as draft, RecordingWriter(draft) as writer:
-                recorder, info = FrameRecorder(writer), None
-                for done in range(first, min(first + PART_FRAMES, job.frames)):
-                    info = _record(recorder, stream, job.begin + done, info)
-                    on_frame(done + 1)
+        known: SceneInfo | None = None
 
+        def record(recorder: FrameRecorder, number: int, begins: bool) -> None:
+            nonlocal known
+            frame: Frame = stream[job.begin + number].frame
+            if begins or frame.info is not known:
+                assert frame.info is not None
+                recorder.write_info(frame.info)
+                known = frame.info
+            recorder.write_frame(frame, frame.depth_range_m)
 
-def _record(
-    recorder: FrameRecorder, stream: streams.Stream, number: int, known: SceneInfo | None
-) -> SceneInfo:
-    """Write one frame, and what clients are told of its scene where that is new."""
-    frame: Frame = stream[number].frame
-    assert frame.info is not None
-    if frame.info is not known:
-        recorder.write_info(frame.info)
-    recorder.write_frame(frame, frame.depth_range_m)
-    return frame.info
+        record_parts(folder, range(begin, job.frames), PART_FRAMES, record, on_frame)

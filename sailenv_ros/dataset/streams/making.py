@@ -36,7 +36,7 @@ from sailenv_ros.types.light_choice import STEADY_LIGHTS, SteadyLight, checked_l
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import checked_views
 
-__all__ = ["PART_FRAMES", "StreamJob", "make_stream", "stream_pairs"]
+__all__ = ["PART_FRAMES", "StreamJob", "make_stream", "record_parts", "stream_pairs"]
 
 PART_FRAMES = 500
 """Frames in each file of the bag: what is lost at most when it is interrupted."""
@@ -187,18 +187,46 @@ def _make_parts(
     with _opened(job) as simulation:
         depth_range_m = simulation.info.agents[0].depth_range_m
         frames = rendered_ahead(_asked_from(job, simulation, begin))
-        for first in range(begin, job.frames, PART_FRAMES):
-            last = min(first + PART_FRAMES, job.frames)
-            with folder.part() as draft, RecordingWriter(draft) as writer:
-                recorder = FrameRecorder(writer)
-                for number in range(first, last):
-                    frame = next(frames)
-                    if number == first:
-                        # As if it had been announced now: log times never go back.
-                        info = dataclasses.replace(simulation.info, sim_time_ns=frame.stamp_ns)
-                        recorder.write_info(info)
-                    recorder.write_frame(frame, depth_range_m)
-                    on_frame(number + 1)
+
+        def record(recorder: FrameRecorder, number: int, begins: bool) -> None:
+            frame = next(frames)
+            if begins:
+                # As if it had been announced now: log times never go back.
+                info = dataclasses.replace(simulation.info, sim_time_ns=frame.stamp_ns)
+                recorder.write_info(info)
+            recorder.write_frame(frame, depth_range_m)
+
+        record_parts(folder, range(begin, job.frames), PART_FRAMES, record, on_frame)
+
+
+def record_parts(
+    folder: StreamFolder,
+    frames: range,
+    part_frames: int,
+    record: Callable[[FrameRecorder, int, bool], None],
+    on_frame: Callable[[int], None],
+) -> None:
+    """Write the parts of a bag.
+
+    Parameters
+    ----------
+    folder : StreamFolder
+    frames : range
+        Numbers of the frames that are missing; the first begins a part.
+    part_frames : int
+        Of each part but the last.
+    record : callable
+        ``record(recorder, number, begins)`` writes a frame; `begins` is true for the first of a
+        part, which has to tell of the scene.
+    on_frame : callable
+        Called with the number of frames that are done, after each.
+    """
+    for first in frames[::part_frames]:
+        with folder.part() as draft, RecordingWriter(draft) as writer:
+            recorder = FrameRecorder(writer)
+            for number in range(first, min(first + part_frames, frames.stop)):
+                record(recorder, number, number == first)
+                on_frame(number + 1)
 
 
 def _opened(job: StreamJob) -> Simulation:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from sailenv_ros.frame.language.scene_graph import FURTHER, SceneGraph, holds
+from sailenv_ros.frame.language.scene_graph import SceneGraph, holds
 from sailenv_ros.frame.language.seen_objects import SeenObject
 from sailenv_ros.frame.language.wording import named
 
@@ -44,11 +44,10 @@ def referring_expressions(graph: SceneGraph) -> tuple[Referring, ...]:
         for target in graph.clear
         if target.category not in graph.parts
         for found in _of(target, graph)
-        if found is not None
     )
 
 
-def _of(target: SeenObject, graph: SceneGraph) -> Iterator[Referring | None]:
+def _of(target: SeenObject, graph: SceneGraph) -> Iterator[Referring]:
     rivals = [
         one
         for one in graph.objects.values()
@@ -59,19 +58,17 @@ def _of(target: SeenObject, graph: SceneGraph) -> Iterator[Referring | None]:
         values = {target.id: {"pixels": float(target.pixels)}}
         yield Referring(text=name, object=target.id, category=target.category, values=values)
         return
-    yield _foremost(target, rivals, f"the {target.category} nearest to the camera", _distance, 1)
-    yield _foremost(target, rivals, f"the tallest {target.category}", _height, -1)
-    if all(one.clear for one in rivals):
-        for kind, word in (("left of", "leftmost"), ("right of", "rightmost")):
-            if all(holds(kind, target, one, graph.width) is not None for one in rivals):
-                values = {one.id: {"left_px": float(one.box[0]), "right_px": float(one.box[2])}
-                          for one in (target, *rivals)}  # fmt: skip
-                yield Referring(
-                    text=f"the {word} {target.category}",
-                    object=target.id,
-                    category=target.category,
-                    values=values,
-                )
+    for kind, (text, measure, needs_clear) in _FOREMOST.items():
+        # Where something hardly seen ends in the picture is not known.
+        if needs_clear and not all(one.clear for one in rivals):
+            continue
+        if all(holds(kind, target, one, graph.width) is not None for one in rivals):
+            yield Referring(
+                text=text.format(target.category),
+                object=target.id,
+                category=target.category,
+                values={one.id: measure(one) for one in (target, *rivals)},
+            )
     for relation in graph.of("on", target.id):
         carrier = graph.objects[relation.object]
         same = [one for one in graph.objects.values() if one.category == carrier.category]
@@ -87,29 +84,20 @@ def _of(target: SeenObject, graph: SceneGraph) -> Iterator[Referring | None]:
             )  # fmt: skip
 
 
-def _foremost(
-    target: SeenObject,
-    rivals: list[SeenObject],
-    text: str,
-    measure: Callable[[SeenObject], float],
-    sign: int,
-) -> Referring | None:
-    """Return an expression for the one with the least (1) or greatest (-1) of a measure."""
-    own = measure(target)
-    others = [measure(one) for one in rivals]
-    least = min(others) >= own * FURTHER if sign > 0 else max(others) * FURTHER <= own
-    if not least:
-        return None
-    values = {one.id: {"value_m": measure(one)} for one in (target, *rivals)}
-    return Referring(text=text, object=target.id, category=target.category, values=values)
+def _place(one: SeenObject) -> Mapping[str, float]:
+    return {"left_px": float(one.box[0]), "right_px": float(one.box[2])}
 
 
-def _distance(one: SeenObject) -> float:
-    return one.distance_m
-
-
-def _height(one: SeenObject) -> float:
-    return one.height_m
+_FOREMOST: Mapping[str, tuple[str, Callable[[SeenObject], Mapping[str, float]], bool]] = {
+    "nearer than": (
+        "the {} nearest to the camera", lambda one: {"value_m": one.distance_m}, False,
+    ),
+    "taller than": ("the tallest {}", lambda one: {"value_m": one.height_m}, False),
+    "left of": ("the leftmost {}", _place, True),
+    "right of": ("the rightmost {}", _place, True),
+}  # fmt: skip
+"""Expression for what has a relation to all others of its category, the numbers that tell it, and
+whether the others have to be clear."""
 
 
 def _is_off(one: SeenObject, carrier: SeenObject) -> bool:

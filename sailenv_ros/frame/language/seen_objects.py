@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.object_table import ObjectTable
-from sailenv_ros.types.labels import UNLABELLED_CATEGORY
+from sailenv_ros.types.labels import ROOM_PARTS, UNLABELLED_CATEGORY
 
 __all__ = ["LEAST_SHARE", "SeenObject", "seen_objects", "seen_parts"]
 
@@ -19,10 +19,8 @@ LEAST_SHARE = 2e-4
 """Share of the picture from which an object is seen; with less it may be there, and nothing is said
 that would be wrong if it were, or if it were not."""
 
-STRUCTURE = frozenset(
-    {"wall", "floor", "ceiling", "skirting", "window", "door", "curtain", "outside", "plane"}
-)
-"""Categories of parts of rooms, which no sentence names."""
+NOT_NAMED = ROOM_PARTS | {"plane"}
+"""Categories that no sentence names: parts of rooms, and the ground outside of them."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -101,7 +99,7 @@ def seen_objects(frame: Frame) -> tuple[SeenObject, ...]:
     for id_, rows in sorted(owned.items()):
         row = row_of[id_]
         labelled = table.category_ids[row] not in (0, UNLABELLED_CATEGORY)
-        if not labelled or table.categories[row] in STRUCTURE:
+        if not labelled or table.categories[row] in NOT_NAMED:
             continue
         boxes = table.visible_boxes[rows]
         left, top = boxes[:, :2].min(axis=0).tolist()

@@ -64,10 +64,12 @@ class OperationRunner:
 
 def answered(
     handler: Callable[[Any, Any], Awaitable[None]],
+    tell: Callable[[SailenvError, Any], None] = error_to_response,
 ) -> Callable[[Any, Any], Coroutine[Any, Any, Any]]:
     """Make a service callback of a handler that fills a response or raises.
 
-    Whatever the handler raises ends here: the response then holds nothing but the error.
+    Whatever the handler raises ends here: the response then holds nothing but the error, as
+    ``tell(error, response)`` writes it.
     """
 
     async def callback(request: Any, response: Any) -> Any:
@@ -81,7 +83,7 @@ def answered(
             refusal = InternalFault.of(error)
         # A fresh response: what the handler filled in before it failed is not told.
         response = type(response)()
-        error_to_response(refusal, response)
+        tell(refusal, response)
         return response
 
     return callback

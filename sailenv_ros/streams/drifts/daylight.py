@@ -8,7 +8,7 @@ from pydantic import Field
 
 from sailenv_ros.scene.fields import Fraction, SceneModel
 from sailenv_ros.streams.fields import FrameCount
-from sailenv_ros.streams.state import DriftRecord, StreamState
+from sailenv_ros.streams.state import DriftRecord, StreamState, tinted
 
 __all__ = ["Daylight"]
 
@@ -37,8 +37,7 @@ class Daylight(SceneModel):
         share = self.night + (noon - self.night) * math.sqrt(max(0.0, height))
         low = 1.0 - min(1.0, max(0.0, height) / 0.5)  # 1 at the horizon, 0 when it is high
         state.daylight *= share
-        red, green, blue = (1.0 + low * (part - 1.0) for part in _RED)
-        state.daylight_colour = (red, green, blue)
+        state.daylight_colour = tinted(_RED, low)
         state.lamplight *= 1.0 if share < NIGHT else self.lamps_by_day
         values = {"hour": hour, "share": share, "year": frame / self.year}
         return DriftRecord(values=values, since=0, active=True)

@@ -6,7 +6,7 @@ from pydantic import Field
 
 from sailenv_ros.scene.fields import Fraction, SceneModel
 from sailenv_ros.streams.fields import FrameCount, FrameNumber
-from sailenv_ros.streams.state import DriftRecord, StreamState, progress
+from sailenv_ros.streams.state import DriftRecord, StreamState, progress, tinted
 
 __all__ = ["LampAge"]
 
@@ -27,8 +27,7 @@ class LampAge(SceneModel):
         age = progress(frame, begin, self.life)
         power = 1.0 - (1.0 - self.left) * age
         state.lamplight *= power
-        red, green, blue = (1.0 + age * (part - 1.0) for part in _OLD)
-        state.lamp_colour = (red, green, blue)
+        state.lamp_colour = tinted(_OLD, age)
         return DriftRecord(
             values={"power": power, "replaced": float(lives)},
             since=begin,

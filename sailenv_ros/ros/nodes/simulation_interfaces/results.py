@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
 
 from simulation_interfaces.msg import Result
 
-from sailenv_ros.errors import InternalFault, SailenvError, UnknownName
+from sailenv_ros.errors import SailenvError, UnknownName
+from sailenv_ros.ros.nodes import requests
 
 __all__ = ["Refusal", "answered", "code_of", "refused", "unsupported"]
-
-_log = logging.getLogger(__name__)
 
 
 class Refusal(SailenvError):
@@ -48,24 +46,15 @@ def code_of(problem: SailenvError) -> int:
 def answered(
     handler: Callable[[Any, Any], Awaitable[None]],
 ) -> Callable[[Any, Any], Coroutine[Any, Any, Any]]:
-    """Make a service callback of a handler that fills a response or raises.
+    """Make a service callback of a handler that fills a response or raises; see `requests`."""
 
-    Whatever the handler raises ends here: the response then holds nothing but the result.
-    """
+    async def begun(request: Any, response: Any) -> None:
+        if hasattr(response, "result"):
+            response.result.result = Result.RESULT_OK
+        await handler(request, response)
 
-    async def callback(request: Any, response: Any) -> Any:
-        try:
-            if hasattr(response, "result"):
-                response.result.result = Result.RESULT_OK
-            await handler(request, response)
-            return response
-        except SailenvError as error:
-            problem = error
-        except Exception as error:
-            _log.exception("a service failed because of an internal error in the simulator")
-            problem = InternalFault.of(error)
-        response = type(response)()
-        response.result = Result(result=code_of(problem), error_message=str(problem))
-        return response
+    return requests.answered(begun, _tell)
 
-    return callback
+
+def _tell(problem: SailenvError, response: Any) -> None:
+    response.result = Result(result=code_of(problem), error_message=str(problem))
