@@ -287,6 +287,20 @@ def _streams(canvas: _Canvas, data: Data) -> None:
     canvas.legend(axes)
 
 
+def _endless(canvas: _Canvas, data: Data) -> None:
+    axes = canvas.axes("Share of pixels classified right, fading over a thousand", height=3.8)
+    for number, entry in enumerate(data["learners"]):
+        points = entry["checkpoints"]
+        colour = [ACCENT, *COLOURS][number % (1 + len(COLOURS))]
+        at = [point["at"] for point in points]
+        axes.plot(at, [point["recent"] for point in points], color=colour, label=entry["name"])
+        other = [point["tests"].get("other") or float("nan") for point in points]
+        axes.plot(at, other, color=colour, linestyle=":", marker="o", markersize=4)
+    axes.set_ylim(0, 1)
+    canvas.label(axes, x="number of the frame; dotted: rooms never visited")
+    canvas.legend(axes)
+
+
 _PLOTS: Mapping[str, Mapping[str, Callable[[_Canvas, Data], None]]] = MappingProxyType(
     {
         "flow_speed": {"flow_speed": _flow_speed},
@@ -294,5 +308,6 @@ _PLOTS: Mapping[str, Mapping[str, Callable[[_Canvas, Data], None]]] = MappingPro
         "detection": {"detection": _detection},
         "throughput": {"throughput": _transports, "renderers": _baselines},
         "streams": {"streams": _streams},
+        "endless": {"endless": _endless},
     }
 )

@@ -54,6 +54,12 @@ HEADINGS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
             "measured on the published files, and what a classifier of raw pixels makes of them.",
             "sailenv bench streams",
         ),
+        "endless": (
+            "Learning without an end",
+            "Small baselines that classify pixels of a stream whose world changes slowly: before "
+            "they are told, and in rooms that they were never shown.",
+            "sailenv bench endless",
+        ),
     }
 )
 """Title, purpose and command of each experiment."""

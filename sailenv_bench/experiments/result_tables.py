@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from sailenv_bench.experiments.detection_tables import detection_tables
+from sailenv_bench.experiments.endless_tables import endless_tables
 from sailenv_bench.experiments.stream_tables import stream_tables
 from sailenv_bench.experiments.tables import Table, accuracy_tables, speed_tables
 from sailenv_bench.experiments.throughput_tables import throughput_tables
@@ -20,6 +21,7 @@ _TABLES: Mapping[str, Callable[[Mapping[str, Any]], list[Table]]] = MappingProxy
         "detection": detection_tables,
         "throughput": throughput_tables,
         "streams": stream_tables,
+        "endless": endless_tables,
     }
 )
 

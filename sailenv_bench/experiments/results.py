@@ -16,7 +16,7 @@ from sailenv_ros.system.files import make_folder, storage_errors, write_file
 
 __all__ = ["EXPERIMENTS", "load_result", "save_result"]
 
-EXPERIMENTS = ("flow_speed", "flow_accuracy", "detection", "throughput", "streams")
+EXPERIMENTS = ("flow_speed", "flow_accuracy", "detection", "throughput", "streams", "endless")
 """Names of the experiments, in the report's order."""
 
 VERSION = 1

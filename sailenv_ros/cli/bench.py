@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from sailenv_ros.cli import bench_all
+from sailenv_ros.cli import bench_all, bench_endless
 from sailenv_ros.cli.experiment import add_common
 
 __all__ = ["add_parser", "run"]
@@ -55,6 +55,7 @@ def add_parser(subparsers: Any) -> None:
     streams.add_argument("--pairs", type=int, default=100, metavar="N", help="of each stream")
     streams.add_argument("--stream", nargs="+", metavar="NAME", help="default: all six")
     streams.add_argument("--seed", type=int, default=0, help="default: %(default)s")
+    bench_endless.add_parser(actions)
     through = actions.add_parser(
         "throughput",
         help="frames per second by size, views, agents, scene, transport; other renderers",
@@ -90,6 +91,8 @@ def run(args: argparse.Namespace) -> int:
         from sailenv_ros.cli.bench_streams import streams
 
         return streams(args)
+    if args.action == "endless":
+        return bench_endless.endless(args)
     if args.action == "throughput":
         from sailenv_ros.cli.bench_throughput import throughput
 

@@ -173,6 +173,11 @@ class Stream(Sequence[Any]):
         for number in self._frames:
             yield self._made(number)
 
+    def as_frames(self) -> Iterator[StreamFrame]:
+        """Yield all frames in their order as `StreamFrame`, whatever the stream's format."""
+        for number in self._frames:
+            yield self._frame(number)
+
     def drift(self, place: int) -> Mapping[str, DriftRecord]:
         """Return what drifts do to a frame, without making it."""
         number = self._frames[place] if self._drift_at is None else self._drift_at
@@ -241,12 +246,16 @@ class Stream(Sequence[Any]):
         return Stream(**{**self.__getstate__(), **changes})
 
     def _made(self, number: int) -> Any:
+        made = self._frame(number)
+        return made.arrays() if self._as_arrays else made
+
+    def _frame(self, number: int) -> StreamFrame:
         place = self._plan.place(number)
         if self._player is None or self._player[0] != os.getpid():
             player = Player(self._course, self._plan, self._seed, self._views, self._drift_at)
             self._player = os.getpid(), player
         frame, drift = self._player[1].frame(place)
-        made = StreamFrame(
+        return StreamFrame(
             number=number,
             room=place.room,
             episode=place.episode,
@@ -254,4 +263,3 @@ class Stream(Sequence[Any]):
             drift=drift,
             frame=frame,
         )
-        return made.arrays() if self._as_arrays else made

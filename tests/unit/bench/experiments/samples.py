@@ -76,6 +76,18 @@ DATA: dict[str, dict[str, Any]] = {
              "horn_schunck": {"motion_f1": 0.3, "accuracies": [0.9, 0.8]}},
         ],
     },
+    "endless": {
+        "course": "home", "seed": 0, "begin": 0, "frames": 100, "stride": 10, "labels": 4,
+        "delay": 2,
+        "learners": [
+            {"name": name, "accuracy": 0.4, "classes": 7,
+             "checkpoints": [
+                 {"at": at, "recent": 0.5, "forgetting": 0.2, "tests": tests}
+                 for at, tests in ((490, {"same": 0.3, "other": 0.2}), (990, {}))
+             ]}
+            for name in ("frequent", "convnet")
+        ],
+    },
     "throughput": {
         "frames": 2, "transports": ["in process", "DDS, default"], "renderer": "GL",
         "base": {"transport": "in process", "scene": "optical", "width": 64, "height": 48,
