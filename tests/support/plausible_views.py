@@ -25,9 +25,9 @@ LARGEST_SHARE = 0.7
 """No object but the room covers more of the picture."""
 
 
-def room_at_rest(name: str) -> WorldSnapshot:
-    """Return a scene of the package as it begins, with its baked light."""
-    return SceneLibrary().snapshot(name)
+def room_at_rest(name: str, *, baked_light: bool = True) -> WorldSnapshot:
+    """Return a scene of the package as it begins, with light as far as it was baked, or without."""
+    return SceneLibrary(baked_light=baked_light).snapshot(name)
 
 
 def plausible_views(
