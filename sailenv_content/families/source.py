@@ -38,6 +38,13 @@ class FamilySource:
         """Return why there is no piece of a name; None if there is one."""
         return _problem(name)
 
+    def sibling(self, name: str, seed: int) -> str | None:
+        """Return the name of another piece of the same style; None for what is no whole piece."""
+        wanted = parsed(name)
+        if wanted is None or wanted.part:
+            return None
+        return PieceName(wanted.family, wanted.style, seed).whole
+
     def load(self, name: str) -> Asset:
         """Make a piece, or a part of one that opens.
 

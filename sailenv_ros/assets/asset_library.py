@@ -60,6 +60,10 @@ class OpenSource(Protocol):
         """
         ...
 
+    def sibling(self, name: str, seed: int) -> str | None:
+        """Return the name of another asset of the same kind; None if a seed makes none of it."""
+        ...
+
     def problem(self, name: str) -> UnknownName | None:
         """Return why there is no asset of a name; None if there is one. Makes nothing."""
         ...
@@ -199,6 +203,11 @@ class AssetLibrary:
         found = self._source_of.get(name) or self._open_source(name)
         assert found is not None  # as it has a name
         return found
+
+    def sibling(self, name: str, seed: int) -> str | None:
+        """Return the name of another asset of the same kind; None if a seed makes none of it."""
+        source = self._open_source(name)
+        return None if source is None else source.sibling(name, seed)
 
     def has(self, name: str) -> bool:
         """Return whether `get` takes a name."""

@@ -41,6 +41,7 @@ class EnvironmentChanges(TypedDict, total=False):
     sky_map: str
     sky_rotation: float
     sky_blend: bool
+    outside_factor: float
     exposure: float
 
 

@@ -97,6 +97,13 @@ class PictureSpec(SceneModel):
         default=_STANDARD.lateral_colour,
         description="share by which red is larger, blue smaller",
     )
+    dirt: Annotated[float, _number("dirt")] = Field(
+        default=_STANDARD.dirt, description="dust and smears on the lens; 0: clean"
+    )
+    white_balance: Annotated[float, _number("white_balance")] = Field(
+        default=_STANDARD.white_balance,
+        description="error of the white balance [mired]; above 0: too warm",
+    )
     jpeg_quality: Annotated[int, _number("jpeg_quality")] = Field(
         default=_STANDARD.jpeg_quality,
         description="compression; 0: none",

@@ -79,6 +79,10 @@ class EnvironmentSpec(SceneModel):
         description="true: the photographed sky is darkened to suit a room; false: its true "
         "radiance, mostly white behind windows",
     )
+    outside_factor: Annotated[float, _of_environment("outside_factor")] = Field(
+        default=_STANDARD.outside_factor,
+        description="factor of the brightness of what is seen outside; 0: a black night",
+    )
     exposure: Annotated[float, _of_environment("exposure")] = Field(
         default=_STANDARD.exposure,
         description="the picture is brightened by 2 to the power of it [stops]",

@@ -50,7 +50,7 @@ def recorded_geometry(info: SceneInfo, library: SceneLibrary | None = None) -> S
             models[instance.id] = bodies[instance.name].model if whole else drawn.model
         elif instance.asset.partition(PART_MARK)[0] in library.knowledge.assets:
             if instance.is_part or instance.id in divided:
-                models[instance.id] = library.drawn_model(instance.asset)
+                models[instance.id] = library.assets.drawn_model(instance.asset)
             else:
                 models[instance.id] = library.peek_asset(instance.asset).model
         else:

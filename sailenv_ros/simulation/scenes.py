@@ -42,7 +42,7 @@ from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.lights import Environment, Light
-from sailenv_ros.types.model import Asset, Model
+from sailenv_ros.types.model import Asset
 from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.build import build_world, make_environment, make_placement
@@ -107,6 +107,11 @@ class SceneLibrary:
         """Names that `build` takes; files that were built from are among them."""
         names = self._catalogue.names
         return (*names, *(name for name in self._files if name not in names))
+
+    @property
+    def assets(self) -> AssetLibrary:
+        """All assets that its scenes may name."""
+        return self._assets
 
     @property
     def spawnables(self) -> tuple[str, ...]:
@@ -253,10 +258,6 @@ class SceneLibrary:
     def peek_asset(self, name: str) -> Asset:
         """Return an asset without keeping one that no world needs; see `AssetLibrary.get`."""
         return self._assets.peek(name)
-
-    def drawn_model(self, asset: str) -> Model:
-        """Return what is drawn of an instance; see `AssetLibrary.drawn_model`."""
-        return self._assets.drawn_model(asset)
 
     def placement(
         self, entry: Mapping[str, Any], pose: Pose, world: World, *, seed: int, start_s: float,

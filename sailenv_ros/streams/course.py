@@ -23,6 +23,7 @@ from sailenv_ros.scene.scene_diagnostics import Diagnostic, model_diagnostics
 from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.streams.drifts.classes import ClassSpan
 from sailenv_ros.streams.drifts.daylight import Daylight
+from sailenv_ros.streams.drifts.furniture import Furniture
 from sailenv_ros.streams.drifts.lamps import LampAge
 from sailenv_ros.streams.drifts.mount import Mount
 from sailenv_ros.streams.drifts.paint import Paint
@@ -98,6 +99,7 @@ class DriftSpec(SceneModel):
     daylight: Daylight | None = optional("light of day and year")
     lamps: LampAge | None = optional("age of lamps")
     paint: Paint | None = optional("colour of walls")
+    furniture: Furniture | None = optional("furniture that is replaced")
     wear: Wear | None = optional("wear of furniture")
     mount: Mount | None = optional("how the camera is mounted")
     sensor: tuple[SensorDrift, ...] = Field(default=(), description="settings of the picture")
@@ -105,7 +107,7 @@ class DriftSpec(SceneModel):
 
     def single(self) -> Iterator[tuple[str, Drift]]:
         """Yield all that one entry describes, by name."""
-        for name in ("daylight", "lamps", "paint", "wear", "mount"):
+        for name in ("daylight", "lamps", "paint", "furniture", "wear", "mount"):
             drift = getattr(self, name)
             if drift is not None:
                 yield name, drift

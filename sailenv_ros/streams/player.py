@@ -133,9 +133,8 @@ class Player:
                 picture=eye.picture.to_settings(),
             )
         )
-        self._stage = Stage(
-            self._core, self._plan.dice(place.episode, "stage"), self._course, place.habit
-        )
+        dice = self._plan.dice(place.episode, "stage")
+        self._stage = Stage(self._core, dice, self._course, place, self._seed)
         state, _ = self._course.state(self._shown(place.frame), self._seed)
         self._stage.furnish(state)
         self._at = place

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.streams.course import Course
+from sailenv_ros.streams.plan import Place
+from sailenv_ros.streams.replacing import replace_pieces
 from sailenv_ros.streams.state import Colour, StreamState, tinted
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.labels import ROOM_PARTS, Instance
@@ -34,16 +36,25 @@ class Stage:
     dice : RandomStream
         Of the episode.
     course : Course
-    habit : str
-        Of the camera.
+    place : Place
+        Of the episode's first frame.
+    seed : int
+        Of the stream.
     """
 
     def __init__(
-        self, core: SynchronousSimulation, dice: RandomStream, course: Course, habit: str
+        self,
+        core: SynchronousSimulation,
+        dice: RandomStream,
+        course: Course,
+        place: Place,
+        seed: int,
     ) -> None:
-        self._core, self._dice, self._course, self._habit = core, dice, course, habit
+        self._core, self._dice, self._course = core, dice, course
+        self._habit, self._room, self._seed = place.habit, place.room, seed
         self._lights: Mapping[str, Light] = {light.name: light for light in core.info.lights}
-        self._ambient = core.get_ambient_light()
+        surroundings = core.world.contents.environment
+        self._ambient, self._outside = surroundings.ambient, surroundings.outside_factor
         self._standing = [
             agent.pose
             for agent in core.info.agents
@@ -64,6 +75,8 @@ class Stage:
         for one in self._objects():
             if one.category in state.absent:
                 core.despawn_object(one.id)
+        if state.furniture_lives:
+            replace_pieces(core, self._objects(), state.furniture_lives, self._seed, self._room)
         if state.paint is not None:
             for one in core.info.instances:
                 if one.category == "wall":
@@ -102,8 +115,9 @@ class Stage:
             core.set_light(
                 name, intensity=light.intensity * factor, colour=_times(light.colour, tint)
             )
-        core.set_ambient_light(
-            _times(self._ambient, _scaled(state.daylight_colour, state.daylight))
+        core.set_environment(
+            ambient=_times(self._ambient, _scaled(state.daylight_colour, state.daylight)),
+            outside_factor=self._outside * state.daylight,
         )
         core.set_picture(eye.picture.to_settings().changed(state.picture), agent=agent)
         core.set_intrinsics(eye.lens(state.zoom), agent=agent)

@@ -60,6 +60,8 @@ class StreamState:
         Colour of all walls, linear; None for the room's own.
     worn : float
         From 0, as new, to 1: how far furniture has yellowed.
+    furniture_lives : float
+        How often each piece of furniture has been replaced, on average.
     absent : set of str
         Categories of which nothing is there.
     """
@@ -74,6 +76,7 @@ class StreamState:
     mount_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     paint: Colour | None = None
     worn: float = 0.0
+    furniture_lives: float = 0.0
     absent: set[str] = field(default_factory=set)
 
 

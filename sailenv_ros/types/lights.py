@@ -50,6 +50,7 @@ LIGHT_LIMITS: Mapping[str, Bounds] = {
 
 ENVIRONMENT_LIMITS: Mapping[str, Bounds] = {
     "sky_share": Bounds(least=0.0, most=1.0),
+    "outside_factor": Bounds(least=0.0, most=100.0),
     "sky_rotation": Bounds(least=-360.0, most=360.0, unit="deg"),
     "exposure": Bounds(least=-20.0, most=20.0, unit="stops"),
 }
@@ -264,6 +265,9 @@ class Environment:
     sky_blend : bool
         Whether the picture of a sky is shown as bright as a photographer would blend it with the
         room; False shows its radiance as it is. It lights the objects alike.
+    outside_factor : float
+        Factor of the brightness with which the picture of a sky, and what lies outside a room,
+        are seen. What lights the objects is not changed.
     exposure : float
         Stops that the picture is brightened by (factor 2**exposure).
     """
@@ -279,6 +283,7 @@ class Environment:
     sky_map: str = ""
     sky_rotation: float = 0.0
     sky_blend: bool = True
+    outside_factor: float = 1.0
     exposure: float = 0.0
 
     def __post_init__(self) -> None:

@@ -49,6 +49,8 @@ LIMITS: Mapping[str, Bounds] = {
     "gain": Bounds(least=0.0, most=8.0, unit="stops"),
     "vignetting": Bounds(least=0.0, most=1.0),
     "lateral_colour": Bounds(least=-0.01, most=0.01),
+    "dirt": Bounds(least=0.0, most=1.0),
+    "white_balance": Bounds(least=-100.0, most=100.0, unit="mired"),
     "jpeg_quality": Bounds(least=0, most=100, whole=True),
 }
 """Bounds of each number."""
@@ -105,6 +107,11 @@ class PictureSettings:
     lateral_colour : float
         By which share the red picture is larger than the green one, and the blue one smaller, -0.01
         to 0.01. Ground truth is of the green one.
+    dirt : float
+        How much of the light dust and smears on the lens hold back, 0 (clean) to 1.
+    white_balance : float
+        By which the camera takes the light for bluer than it is, -100 to 100 [mired]: above 0 the
+        picture is too warm, below 0 too cold.
     jpeg_quality : int
         Quality of the JPEG file that the picture has been in, 1 to 100; 0: none.
 
@@ -132,6 +139,8 @@ class PictureSettings:
     gain: float = 0.0
     vignetting: float = 0.0
     lateral_colour: float = 0.0
+    dirt: float = 0.0
+    white_balance: float = 0.0
     jpeg_quality: int = 0
 
     def __post_init__(self) -> None:
@@ -218,6 +227,8 @@ class PictureChanges(TypedDict, total=False):
     gain: float
     vignetting: float
     lateral_colour: float
+    dirt: float
+    white_balance: float
     jpeg_quality: int
 
 

@@ -97,6 +97,7 @@ def scene_to_json(info: SceneInfo) -> SceneMessage:
             "sky_map": surroundings.sky_map,
             "sky_rotation": surroundings.sky_rotation,
             "sky_blend": surroundings.sky_blend,
+            "outside_factor": surroundings.outside_factor,
             "sky_share": surroundings.sky_share,
             "exposure": surroundings.exposure,
         },

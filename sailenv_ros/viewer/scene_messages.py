@@ -87,6 +87,7 @@ class EnvironmentNews(TypedDict):
     sky_map: str
     sky_rotation: float
     sky_blend: bool
+    outside_factor: float
     sky_share: float
     exposure: float
 

@@ -15,10 +15,12 @@ from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.assets.skies import load_sky, sky_files
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.render.contract import RenderBackend
-from sailenv_ros.render.scene.seen_sky import FINER, seen_sky
+from sailenv_ros.render.scene.seen_sky import FINER, SkyLook, seen_sky
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.lights import Environment, SkyMap
+from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
@@ -90,6 +92,30 @@ def test_a_sky_is_blended_unless_its_radiance_is_wanted(
     assert seen[True] <= 235
 
 
+@pytest.mark.parametrize("blend", [True, False])
+def test_a_sky_is_seen_with_a_factor(world: World, renderer: RenderBackend, blend: bool) -> None:
+    """Linear light of the picture is in that proportion; the same light is in the room."""
+    camera = Camera(
+        intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=30.0),
+        pose=look_at((0, 0, 0), (1, 0, 0)),
+        picture=PictureSettings(tone_curve="linear"),
+    )
+    grey = replace(painted_sky(), radiance=np.full((60, 120, 3), 0.16, np.float16))
+    before = world.contents.environment
+    light = {}
+    try:
+        for factor in (1.0, 0.25, 4.0):
+            world.set_environment(
+                Environment(sky=grey, sky_map="painted", sky_blend=blend, outside_factor=factor)
+            )
+            rendered = renderer.render(world.snapshot(), None, camera, ("rgb",))
+            light[factor] = float(linear_from_srgb(rendered.views["rgb"][16, 16, 0] / 255.0))
+    finally:
+        world.set_environment(before)
+    assert light[0.25] == pytest.approx(0.25 * light[1.0], rel=0.04)
+    assert light[4.0] == pytest.approx(4.0 * light[1.0], rel=0.04)
+
+
 def test_above_is_the_first_row(world: World, renderer: RenderBackend) -> None:
     """The zenith of this sky is black."""
     camera = Camera(
@@ -146,21 +172,25 @@ def test_only_what_is_bright_is_blended(exposure: float) -> None:
         (5.0, 0.6, 0.63),
         (80.0, 0.6, 0.63),
     ):
-        seen = seen_sky(_sky(_even(exposed / 2.0**exposure)), exposure).astype(np.float64)
+        seen = seen_sky(_sky(_even(exposed / 2.0**exposure)), SkyLook(exposure, 1.0)).astype(
+            np.float64
+        )
         assert seen.shape == (64 * FINER, 128 * FINER, 3)
         assert low * 0.99 <= seen.min() * 2.0**exposure
         assert seen.max() * 2.0**exposure <= high * 1.01
     ramp = _even(1.0) * np.geomspace(0.01, 50.0, 128)[None, :, None].astype(np.float16)
-    assert seen_sky(_sky(ramp.astype(np.float16)), exposure).max() * 2.0**exposure < 1.0
+    assert (
+        seen_sky(_sky(ramp.astype(np.float16)), SkyLook(exposure, 1.0)).max() * 2.0**exposure < 1.0
+    )
 
 
 def test_fine_differences_of_what_is_bright_stay() -> None:
     """Twigs that take a fifth of a white sky's light stay as dark against it."""
     radiance = _even(4.0)
     radiance[:, ::8] = radiance[:, 1::8] = 3.2
-    seen = seen_sky(_sky(radiance), 1.0).astype(np.float64)[32, 32:-32, 1]
+    seen = seen_sky(_sky(radiance), SkyLook(1.0, 1.0)).astype(np.float64)[32, 32:-32, 1]
     assert seen.max() / seen.min() > 4.0 / 3.2
-    unchanged = seen_sky(_sky(radiance), None).astype(np.float64)
+    unchanged = seen_sky(_sky(radiance)).astype(np.float64)
     assert unchanged.mean() == pytest.approx(float(radiance.mean(dtype=np.float64)), rel=0.01)
 
 

@@ -49,6 +49,8 @@ OTHERS: dict[str, Any] = {
     "gain": 1.0,
     "vignetting": 0.8,
     "lateral_colour": 0.01,
+    "dirt": 0.6,
+    "white_balance": -40.0,
     "jpeg_quality": 40,
 }
 """Of each setting another value than the usual one."""

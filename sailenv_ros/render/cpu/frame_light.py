@@ -33,7 +33,7 @@ from sailenv_ros.render.scene.lightmap_compositing import (
 from sailenv_ros.render.scene.outside_light import shown_outside
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import RoomReflections, Share
-from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
+from sailenv_ros.render.scene.seen_sky import AS_IT_IS, SkyLook, seen_sky, sky_look
 from sailenv_ros.render.scene.shadow_plan import SIZE_PX, ShadowPlan
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.lights import Light, SkyMap, lamp_rows
@@ -135,7 +135,7 @@ class FrameLight:
             native_library().digest,
         )
         self._reflection_points = np.zeros(1, REFLECTION_POINT)
-        self._sky: tuple[tuple[SkyMap, float | None], NDArray[np.float16]] | None = None
+        self._sky: tuple[tuple[SkyMap, SkyLook], NDArray[np.float16]] | None = None
         self._lamps = np.zeros(0, LAMP)
         self._warned_of: Sequence[Light] | None = None
         self._light = np.zeros(1, LIGHT)
@@ -210,7 +210,7 @@ class FrameLight:
             light["main_towards"][0] = -np.asarray(main.direction)
         light["outside_id"], light["outside_radiance"] = shown_outside(snapshot.contents)
         if environment.sky is not None:
-            wanted = environment.sky, seen_exposure(environment)
+            wanted = environment.sky, sky_look(environment)
             if self._sky is None or self._sky[0] != wanted:
                 self._sky = wanted, _sky_texels(*wanted)
             _set_sky(light, self._sky[1])
@@ -269,7 +269,7 @@ class FrameLight:
         light["shadow_at"] = address(unshadowed)
         lamp, sky = lamp_rows(()), contents.environment.sky
         if alone is None and sky is not None:
-            texels = _sky_texels(sky, None)
+            texels = _sky_texels(sky, AS_IT_IS)
             _set_sky(light, texels)
         if alone is None:
             composited = composite_lightmap(contents.baked, (), contents.environment)
@@ -318,9 +318,9 @@ def _set_sky(light: NDArray[np.void], texels: NDArray[np.float16]) -> None:
 
 
 @lru_cache(maxsize=2)
-def _sky_texels(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
+def _sky_texels(sky: SkyMap, look: SkyLook) -> NDArray[np.float16]:
     """Return (H, W + 1, 4) of `seen_sky`: the first column is repeated behind the last."""
-    seen = seen_sky(sky, exposure)
+    seen = seen_sky(sky, look)
     height, width, _ = seen.shape
     texels = np.zeros((height, width + 1, 4), np.float16)
     texels[:, :width, :3] = seen

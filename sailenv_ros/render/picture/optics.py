@@ -1,6 +1,7 @@
-"""Effects of glass on light: vignetting and lateral chromatic aberration.
+"""Effects of glass on light: vignetting, lateral chromatic aberration, dirt.
 
-Radiance comes in, radiance goes out. Both follow the angle or the distance from the optical axis.
+Radiance comes in, radiance goes out. The first two follow the angle or the distance from the
+optical axis; dirt stays where it is on the glass.
 """
 
 from __future__ import annotations
@@ -14,7 +15,17 @@ from sailenv_ros.frame.lens_rays import depth_shares
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.picture_settings import PictureSettings
 
-__all__ = ["through_lens"]
+__all__ = ["dirt_cover", "through_lens"]
+
+SPOTS = 60
+SPOT_RADII, SPOT_COVER = (0.015, 0.1), (0.1, 0.65)
+"""Radii of spots in heights of the picture, and the light that they hold back in their middle."""
+
+SMEAR_COVER, SMEAR_NODES = 0.35, 7
+"""Light that smears hold back at most, and their knots along the picture's height."""
+
+VEIL = 0.5
+"""Share of the light held back that arrives elsewhere: it brightens all alike."""
 
 
 def through_lens(
@@ -28,7 +39,7 @@ def through_lens(
         Linear; the fourth number is kept.
     lens : CameraIntrinsics
     settings : PictureSettings
-        Of which `lateral_colour` and `vignetting` count.
+        Of which `dirt`, `lateral_colour` and `vignetting` count.
 
     Returns
     -------
@@ -41,7 +52,41 @@ def through_lens(
             light[..., channel] = _scaled(light[..., channel], lens, 1.0 + share)
     if settings.vignetting:
         light[..., :3] *= _falloff(lens, settings.vignetting)[..., None]
+    if settings.dirt:
+        cover = settings.dirt * dirt_cover(lens.width, lens.height)[..., None]
+        held = cover * light[..., :3]
+        light[..., :3] -= held
+        light[..., :3] += VEIL * held.mean(axis=(0, 1), dtype=np.float64).astype(np.float32)
     return light.astype(np.float16)
+
+
+@lru_cache(maxsize=4)
+def dirt_cover(width: int, height: int) -> NDArray[np.float32]:
+    """Return (H, W) float32: the share of light that dirt holds back at its worst, 0 to 1.
+
+    Spots are out of focus, so they have soft edges; smears are smooth noise. It is always the same
+    dirt: as many pixels or fewer show the same.
+    """
+    from scipy.ndimage import zoom  # takes long to import, and few need it
+
+    rng = np.random.default_rng([ord(letter) for letter in "dirt"])
+    aspect = width / height
+    places = rng.random((SPOTS, 2)) * np.array([1.0, aspect])
+    (small, large), (thin, thick) = np.log(SPOT_RADII), SPOT_COVER
+    radii = np.exp(rng.uniform(small, large, SPOTS))
+    depths = rng.uniform(thin, thick, SPOTS)
+    v, u = (np.mgrid[:height, :width] + 0.5).astype(np.float32) / np.float32(height)
+    clear = np.ones((height, width), np.float32)
+    for place, radius, depth in zip(places, radii, depths, strict=True):
+        away = np.hypot(v - np.float32(place[0]), u - np.float32(place[1])) / radius
+        edge = ((1.6 - away) / 1.4).clip(0.0, 1.0)
+        clear *= 1.0 - depth * edge**2 * (3.0 - 2.0 * edge)
+    nodes = rng.random((SMEAR_NODES, max(2, round(SMEAR_NODES * aspect))))
+    factors = (height / nodes.shape[0], width / nodes.shape[1])
+    smears = zoom(nodes, factors, order=3, mode="nearest", grid_mode=True)
+    clear *= 1.0 - np.float32(SMEAR_COVER) * smears.astype(np.float32).clip(0.0, 1.0)
+    cover: NDArray[np.float32] = (1.0 - clear).astype(np.float32)
+    return cover
 
 
 @lru_cache(maxsize=8)

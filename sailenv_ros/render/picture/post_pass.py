@@ -18,6 +18,7 @@ from sailenv_ros.render.picture.optics import through_lens
 from sailenv_ros.render.picture.raw_data import raw_data
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.render.picture.tone import code_table
+from sailenv_ros.render.picture.white_balance import white_balanced
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import AdaptedExposure, WorldSnapshot
 
@@ -131,6 +132,9 @@ class PostPass:
                 threads=self._threads,
             )
             light = Light(radiance)
+        if settings.white_balance:
+            balanced = white_balanced(light.radiance, settings.white_balance)
+            light = Light(balanced, light.shade, light.surface)
         rgb = tone_map.tone_map(
             light.radiance, code_table(settings), light.shade, light.surface, threads=self._threads
         )
@@ -148,7 +152,7 @@ class PostPass:
     def through_lens(self, light: Light, camera: Camera) -> Light:
         """Return light as the camera's lens leaves it."""
         settings = camera.picture
-        if not settings.lateral_colour and not settings.vignetting:
+        if not (settings.lateral_colour or settings.vignetting or settings.dirt):
             return light
         return Light(through_lens(self.at_sensor(light), camera.intrinsics, settings))
 

@@ -33,8 +33,9 @@ def shown_outside(contents: SceneContents) -> tuple[int, float]:
 
 def _radiance(drawn: DrawnInstance, environment: Environment) -> float:
     white = max(drawn.model.parts[0].material.emission)
+    factor = environment.outside_factor
     exposure = seen_exposure(environment)
     if exposure is None:
-        return white
+        return white * factor
     mean = np.array([max(1e-6, MEAN_SHARE * white * 2.0**exposure)], np.float32)
-    return white * float((compressed(mean) / mean)[0])
+    return white * factor * float((compressed(mean) / mean)[0])

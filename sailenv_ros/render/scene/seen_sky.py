@@ -9,6 +9,9 @@ changed: light and reflections come from the sky as it is.
 
 from __future__ import annotations
 
+from functools import lru_cache
+from typing import NamedTuple
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +19,7 @@ from numpy.typing import NDArray
 from sailenv_ros.types.colour import LUMINANCE
 from sailenv_ros.types.lights import Environment, SkyMap
 
-__all__ = ["FINER", "seen_exposure", "seen_sky"]
+__all__ = ["AS_IT_IS", "FINER", "SkyLook", "seen_exposure", "seen_sky", "sky_look"]
 
 FINER = 2
 """Pixels of what is seen for one of the file, along each side: windows magnify the sky, and
@@ -43,8 +46,36 @@ DETAIL = 1.35
 """Fine differences are made so much stronger, in stops: a pixel of the sky is some pixels of the
 picture, and lenses are sharper."""
 
+_MOST = 6e4
+"""Radiance that half precision can hold."""
+
 BRIGHTEST = 0.85
 """Exposed luminance that no pixel passes."""
+
+
+class SkyLook(NamedTuple):
+    """Look of a sky.
+
+    Attributes
+    ----------
+    exposure : float or None
+        Of the surroundings [stops]: it is blended for a picture of that exposure. None leaves
+        brightness as it is.
+    factor : float
+        Of its brightness.
+    """
+
+    exposure: float | None
+    factor: float
+
+
+AS_IT_IS = SkyLook(None, 1.0)
+"""The look of a sky that lights and is mirrored."""
+
+
+def sky_look(environment: Environment) -> SkyLook:
+    """Return how a sky is seen."""
+    return SkyLook(seen_exposure(environment), environment.outside_factor)
 
 
 def seen_exposure(environment: Environment) -> float | None:
@@ -52,7 +83,7 @@ def seen_exposure(environment: Environment) -> float | None:
     return environment.exposure if environment.sky_blend else None
 
 
-def seen_sky(sky: SkyMap, exposure: float | None = None) -> NDArray[np.float16]:
+def seen_sky(sky: SkyMap, look: SkyLook = AS_IT_IS) -> NDArray[np.float16]:
     """Return (`FINER` H, `FINER` 2 H, 3) float16: the radiance that is seen of a sky.
 
     A sky's file holds no sun (`assets.skies`): where it stood, luminance is capped, and what is
@@ -62,10 +93,18 @@ def seen_sky(sky: SkyMap, exposure: float | None = None) -> NDArray[np.float16]:
     Parameters
     ----------
     sky : SkyMap
-    exposure : float or None
-        Of the surroundings [stops]: the blend is made for a picture of that exposure. None leaves
-        brightness as it is.
+    look : SkyLook
     """
+    if look.factor == 1.0:
+        return _seen(sky, look.exposure)
+    shown: NDArray[np.float16] = np.minimum(
+        _seen(sky, look.exposure) * np.float32(look.factor), np.float32(_MOST)
+    ).astype(np.float16)
+    return shown
+
+
+@lru_cache(maxsize=1)
+def _seen(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
     radiance = _without_spots(sky.radiance.astype(np.float32))
     if exposure is not None:
         radiance = _blended(radiance, 2.0**exposure)
@@ -76,8 +115,10 @@ def seen_sky(sky: SkyMap, exposure: float | None = None) -> NDArray[np.float16]:
     size = (FINER * wrapped.shape[1], FINER * height)
     finer = cv2.resize(wrapped, size, interpolation=cv2.INTER_CUBIC)
     kept = finer[:, FINER * around : FINER * (around + width)]
-    result: NDArray[np.float16] = np.clip(kept, 0.0, 6e4).astype(np.float16)
-    return np.ascontiguousarray(result)
+    result: NDArray[np.float16] = np.clip(kept, 0.0, _MOST).astype(np.float16)
+    result = np.ascontiguousarray(result)
+    result.flags.writeable = False
+    return result
 
 
 def _without_spots(radiance: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -18,7 +18,10 @@ __all__ = ["SensorDrift"]
 
 _Value = Annotated[float, Number(least=-1e9, most=1e9)]
 
-SETTINGS = ("exposure", "bloom", "full_well", "read_noise", "gain", "vignetting", "lateral_colour")
+SETTINGS = (
+    "exposure", "bloom", "full_well", "read_noise", "gain", "vignetting", "lateral_colour", "dirt",
+    "white_balance",
+)  # fmt: skip
 """Settings that may drift; whole numbers and times of exposure do not go over gradually."""
 
 

@@ -117,6 +117,7 @@ export interface EnvironmentNews {
   sky_map: string;
   sky_rotation: number;
   sky_blend: boolean;
+  outside_factor: number;
   sky_share: number;
   exposure: number;
 }
@@ -396,6 +397,7 @@ export interface EnvironmentChanges {
   sky_map?: string;
   sky_rotation?: number;
   sky_blend?: boolean;
+  outside_factor?: number;
   exposure?: number;
 }
 
@@ -467,6 +469,8 @@ export interface PictureSettings {
   gain: number;
   vignetting: number;
   lateral_colour: number;
+  dirt: number;
+  white_balance: number;
   jpeg_quality: number;
 }
 
@@ -490,6 +494,8 @@ export interface PictureChanges {
   gain?: number;
   vignetting?: number;
   lateral_colour?: number;
+  dirt?: number;
+  white_balance?: number;
   jpeg_quality?: number;
 }
 
