@@ -10,7 +10,7 @@ import gzip
 import io
 import itertools
 import statistics
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -21,6 +21,7 @@ from sailenv_ros.dataset.formats.data_files import write_bytes, write_json, writ
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.system.files import replaced_folder
 from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["LveExport", "lve_motion"]
@@ -28,6 +29,8 @@ __all__ = ["LveExport", "lve_motion"]
 FILES_PER_FOLDER = 100
 
 BACKGROUND = "background"
+
+MAP = "map.json"
 
 
 def lve_motion(frame: Frame) -> NDArray[np.float32]:
@@ -51,6 +54,7 @@ class LveExport(DatasetFormat):
     ``001.indices.bin`` a class and an index for every pixel, row by row, ``sup/map.json`` the
     classes by name. Arrays are NumPy files, compressed with gzip. A class is the category of
     objects that can move; all else, also what stands still of the same category, is background.
+    Where categories come and go, all of them have their numbers from the first frame on.
     """
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "instance", "flow")
@@ -59,8 +63,7 @@ class LveExport(DatasetFormat):
     def add(self, sample: Sample) -> WriteResult:
         """Write a frame's files."""
         frame = sample.frame
-        folder, file = divmod(sample.number, FILES_PER_FOLDER)
-        place = f"{folder + 1:08d}/{file + 1:03d}"
+        place = _place(sample.number)
         classes = _classes(sample.scene_info("lve"))
         targets = _targets(frame, sample.scene_info("lve"), classes)
         write_png(self.folder / "frames" / f"{place}.png", frame["rgb"])
@@ -69,7 +72,12 @@ class LveExport(DatasetFormat):
         indices = np.arange(targets.size, dtype=np.int32)
         _write_array(self.folder / "sup" / f"{place}.indices.bin", indices)
         return WriteResult(
-            record={"stamp_ns": frame.stamp_ns, "epoch": frame.epoch, "classes": classes},
+            record={
+                "stamp_ns": frame.stamp_ns,
+                "epoch": frame.epoch,
+                "classes": list(classes.values()),
+                "ids": list(classes),
+            },
             written={"pictures": 1, "flow fields": 1, "label maps": 1},
         )
 
@@ -79,41 +87,65 @@ class LveExport(DatasetFormat):
         Raises
         ------
         RecordingError
-            If the frames are not of one epoch, are fewer than two, or their classes change.
+            If the frames are not of one epoch, or are fewer than two.
         """
         values: list[dict[str, Any]] = [record.value for record in records]
         if len({value["epoch"] for value in values}) > 1:
             raise RecordingError("lve needs frames of one epoch; the scene was changed or reset")
-        if len({tuple(value["classes"]) for value in values}) > 1:
-            raise RecordingError(
-                "lve needs the same categories of movable objects in every frame; they changed"
-            )
         stamps = [value["stamp_ns"] for value in values]
         steps = [after - before for before, after in itertools.pairwise(stamps)]
         if not steps or min(steps) <= 0:
             raise RecordingError("lve needs at least two frames, each later than the one before")
         fps = round(1e9 / statistics.median(steps), 6)
         write_json(self.folder / "frames" / "fps.json", {"fps": fps})
-        names = [*values[0]["classes"], BACKGROUND]
-        write_json(
-            self.folder / "sup" / "map.json", {name: place for place, name in enumerate(names)}
-        )
+        found = {
+            id_: name
+            for value in values
+            for id_, name in zip(value["ids"], value["classes"], strict=True)
+        }
+        names = [*(found[id_] for id_ in sorted(found)), BACKGROUND]
+        table = {name: place for place, name in enumerate(names)}
+        if all(value["classes"] == names[:-1] for value in values):
+            write_json(self.folder / "sup" / MAP, table)
+        elif not (self.folder / "sup" / MAP).exists():
+            self._renumber(records, table)
+
+    def _renumber(self, records: Sequence[Record], table: Mapping[str, int]) -> None:
+        """Give all frames the numbers of one table; the folder is the old one or the new one."""
+        old = self.folder / "sup"
+        with replaced_folder(old) as draft:
+            for record in records:
+                names = (*record.value["classes"], BACKGROUND)
+                numbers = np.array([table[name] for name in names], np.int32)
+                file = f"{_place(record.number)}.targets.bin"
+                targets = np.load(io.BytesIO(gzip.decompress((old / file).read_bytes())))
+                _write_array(draft / file, numbers[targets])
+                file = f"{_place(record.number)}.indices.bin"
+                write_bytes(draft / file, (old / file).read_bytes())
+            write_json(draft / MAP, table)
 
 
-def _classes(info: SceneInfo) -> list[str]:
-    """Return the categories of what can move, in the order of their ids."""
+def _place(number: int) -> str:
+    """Return the folder and the name of a frame's files, without their endings."""
+    folder, file = divmod(number, FILES_PER_FOLDER)
+    return f"{folder + 1:08d}/{file + 1:03d}"
+
+
+def _classes(info: SceneInfo) -> dict[int, str]:
+    """Return the categories of what can move, by their ids, in the order of these."""
     found = {i.category_id: i.category for i in info.instances if not i.static}
-    return [found[id_] for id_ in sorted(found)]
+    return {id_: found[id_] for id_ in sorted(found)}
 
 
-def _targets(frame: Frame, info: SceneInfo, classes: list[str]) -> NDArray[np.int32]:
+def _targets(frame: Frame, info: SceneInfo, classes: Mapping[int, str]) -> NDArray[np.int32]:
     """Return (H·W,) classes, row by row."""
     ids: NDArray[Any] = frame["instance"]
     highest = max([int(ids.max()), *(instance.id for instance in info.instances)])
     table = np.full(highest + 1, len(classes))
+    places = {id_: place for place, id_ in enumerate(classes)}
     for instance in info.instances:
         if not instance.static:
-            table[instance.id] = classes.index(instance.category)
+            table[instance.id] = places[instance.category_id]
     return np.asarray(table[ids].reshape(-1), np.int32)
 
 

@@ -134,3 +134,47 @@ def test_the_first_frame_has_no_motion(stream: Any) -> None:
 def test_a_single_frame_is_no_stream(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="at least two frames"):
         captured(tmp_path, 1)
+
+
+def test_classes_that_come_and_go_have_one_number_each(tmp_path: Path) -> None:
+    """All are numbered by their ids, whenever they are there; a writer that was ended goes on."""
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(SCENE)
+    agent = AgentSpec(
+        name="eye",
+        intrinsics=CameraIntrinsics(width=SIZE, height=SIZE),
+        pose=look_at((-2.5, 0.0, 1.2), (0.0, 0.0, 0.6)),
+        following=False,
+    )
+    frames: list[Any] = []
+    with Simulation(scene, mode="lockstep", agent=agent) as simulation:
+        for number in range(6):
+            if number == 2:
+                simulation.despawn_object("ball")
+            if number == 4:
+                simulation.spawn_object(
+                    "cube", (0, -0.6, 0.5), scale=0.5, category="cup", mass_kg=1.0
+                )
+            frames.append(simulation.capture(["rgb", "category", "instance", "flow"]))
+            simulation.step(STEPS)
+    writer = DatasetWriter(tmp_path / "lve", ["lve"])
+    for frame in frames[:3]:
+        writer.add(frame)
+    writer.close()
+    with DatasetWriter(tmp_path / "lve", ["lve"], resume=True) as writer:
+        for frame in frames[3:]:
+            writer.add(frame)
+        writer.finish()
+    names = json.loads((tmp_path / "lve" / "sup" / "map.json").read_text())
+    categories = frames[0].info.categories
+    moving = {i.category for frame in frames for i in frame.info.instances if not i.static}
+    by_id = sorted(moving, key=lambda name: categories.named(name).id)
+    assert list(names.items()) == [(name, n) for n, name in enumerate([*by_id, "background"])]
+    for number, frame in enumerate(frames):
+        targets = load(tmp_path / "lve" / "sup" / "00000001" / f"{number + 1:03d}.targets.bin")
+        expected = np.full(frame["instance"].shape, names["background"])
+        for instance in frame.info.instances:
+            if not instance.static:
+                expected[frame["instance"] == instance.id] = names[instance.category]
+        np.testing.assert_array_equal(targets.reshape(expected.shape), expected)
+    assert not list(tmp_path.rglob("*.unfinished"))
