@@ -1,0 +1,239 @@
+"""Judges streams without an end by programs of others: river, PyTorch, avalanche.
+
+    python benchmarks/judge_streams.py seek [--frames N]
+    python benchmarks/judge_streams.py loader [--frames N] [--workers N]
+    python benchmarks/judge_streams.py avalanche [--experiences N]
+    python benchmarks/judge_streams.py drift [--still N]
+
+`seek` plays a part of `home` through, makes random frames of it in another process by their
+numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
+shuffled. `avalanche` trains its `Naive` on experiences that are made when they are asked for.
+`drift` gives the mean colour of pictures to river's ADWIN as it comes: a camera that walks in one
+room, one drift at a time, which begins at a frame; and many frames without any drift.
+
+Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import multiprocessing
+import resource
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+import sailenv_ros.streams as streams
+
+SEED = 11
+FIRST = 812_000
+"""Where the parts begin that are looked at: all drifts of `home` are under way."""
+
+ONSET, BEFORE, AFTER = 20_000, 5_000, 1_500
+WITHIN = 1_000
+"""A drift is found if ADWIN tells it within so many frames of its onset."""
+
+PLAIN: dict[str, Any] = {
+    "version": 1,
+    "rate": 25,
+    "episode": 500,
+    "visit": 1,
+    "rooms": {"scenes": ["room_03"]},
+    "eye": {
+        "width": 64, "height": 64, "walk": 1, "carry": 0, "fixate": 0, "stand": 0,
+        "picture": {"smooth_edges": False, "full_well": 4000, "read_noise": 3},
+    },
+    "moves": {"open": 2, "pushed": 3},
+}  # fmt: skip
+
+
+def _sensor(setting: str, begin: float, end: float, over: int = 0) -> dict[str, Any]:
+    change = {"setting": setting, "onset": ONSET, "over": over, "begin": begin, "end": end}
+    return {"sensor": [change]}
+
+
+DRIFTS: dict[str, dict[str, Any]] = {
+    "paint": {"paint": {"onset": ONSET, "every": 1_000_000}},
+    "lamps": {"lamps": {"onset": ONSET, "life": 1000, "left": 0.2}},
+    "gain": _sensor("gain", 0.0, 0.5),
+    "white_balance": _sensor("white_balance", 0.0, 30.0),
+    "dirt": _sensor("dirt", 0.0, 0.6, over=500),
+    "vignetting": _sensor("vignetting", 0.0, 1.0),
+    "wear": {"wear": {"onset": ONSET - 1, "over": 1, "most": 1}},
+    "mount": {"mount": {"onset": ONSET, "every": 1_000_000, "turn": 15, "shift": 0.1, "zoom": 0.3}},
+    "classes": {"classes": [{"category": "bed", "begin": ONSET}]},
+}
+"""One drift each, from `ONSET` on."""
+
+
+def main() -> None:
+    """Judge."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    actions = parser.add_subparsers(dest="action", required=True)
+    seek = actions.add_parser("seek")
+    seek.add_argument("--frames", type=int, default=200)
+    loader = actions.add_parser("loader")
+    loader.add_argument("--frames", type=int, default=2000)
+    loader.add_argument("--workers", type=int, default=2)
+    avalanche = actions.add_parser("avalanche")
+    avalanche.add_argument("--experiences", type=int, default=10)
+    drift = actions.add_parser("drift")
+    drift.add_argument("--still", type=int, default=100_000)
+    options = parser.parse_args()
+    if options.action == "seek":
+        judge_seeking(options.frames)
+    elif options.action == "loader":
+        judge_loader(options.frames, options.workers)
+    elif options.action == "avalanche":
+        judge_avalanche(options.experiences)
+    else:
+        judge_drift(options.still)
+
+
+def judge_seeking(count: int) -> None:
+    """Compare frames that were played through with the same ones by their numbers."""
+    spread = 20 * count
+    numbers = np.sort(np.random.default_rng(SEED).choice(spread, count, replace=False)) + FIRST
+    wanted = set(numbers.tolist())
+    with streams.open("home", seed=SEED) as stream:
+        played = {
+            frame.number: _digest(frame)
+            for frame in stream[FIRST : FIRST + spread]
+            if frame.number in wanted
+        }
+    mixed = np.random.default_rng(SEED + 1).permutation(numbers).tolist()
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        sought, seconds = pool.apply(_sought, (mixed,))
+    same = sum(played[number] == sought[number] for number in played)
+    print(
+        f"{same} of {count} frames equal; by number {np.median(seconds):.2f} s (median),", end=" "
+    )
+    print(f"{max(seconds):.2f} s (longest)")
+
+
+def _sought(numbers: Sequence[int]) -> tuple[dict[int, str], list[float]]:
+    found, seconds = {}, []
+    with streams.open("home", seed=SEED) as stream:
+        for number in numbers:
+            begin_s = time.monotonic()
+            found[number] = _digest(stream[number])
+            seconds.append(time.monotonic() - begin_s)
+    return found, seconds
+
+
+def _digest(frame: Any) -> str:
+    digest = hashlib.sha256()
+    for name, view in sorted(frame.views.items()):
+        digest.update(name.encode() + np.ascontiguousarray(view).tobytes())
+    return digest.hexdigest()
+
+
+def judge_loader(count: int, workers: int) -> None:
+    """Read through PyTorch's loader, in order and shuffled, and compare with the stream."""
+    from torch.utils.data import DataLoader
+
+    part = streams.open("home", seed=SEED, format="arrays")[FIRST : FIRST + count]
+    with streams.open("home", seed=SEED)[FIRST : FIRST + 50] as plain:
+        expected = {frame.number: frame["rgb"].copy() for frame in plain}
+    for label, subset, shuffle in (("in order", part, False), ("shuffled", part[:200], True)):
+        loader = DataLoader(subset, batch_size=16, num_workers=workers, shuffle=shuffle)  # type: ignore[arg-type]
+        begin_s, seen, equal = time.monotonic(), 0, 0
+        for batch in loader:
+            seen += len(batch["number"])
+            for place, number in enumerate(batch["number"].tolist()):
+                if number in expected:
+                    equal += int((batch["rgb"][place].numpy() == expected[number]).all())
+        rate = seen / (time.monotonic() - begin_s)
+        print(f"{label}: {seen} frames, {rate:.0f} a second; {equal} of 50 compared are equal")
+
+
+def judge_avalanche(count: int) -> None:
+    """Train avalanche's `Naive` on experiences of 100 frames that are made when they are due."""
+    import torch
+    from avalanche.benchmarks import CLStream
+    from avalanche.benchmarks.scenarios.dataset_scenario import DatasetExperience
+    from avalanche.benchmarks.utils import as_classification_dataset
+    from avalanche.models import SimpleCNN
+    from avalanche.training.supervised import Naive
+
+    stream = streams.open("home", seed=SEED, views=("rgb", "category", "instance"))
+    made = []
+
+    def experiences() -> Iterator[Any]:
+        for number in range(count):
+            pictures, labels = [], []
+            begin = FIRST + 1000 * number
+            for frame in stream[begin : begin + 1000 : 10]:
+                picture = torch.from_numpy(frame["rgb"][::4, ::4].copy())
+                pictures.append(picture.permute(2, 0, 1).float() / 255.0)
+                labels.append(int(np.bincount(frame["category"].reshape(-1)).argmax()))
+            data: Any = torch.utils.data.TensorDataset(torch.stack(pictures), torch.tensor(labels))
+            data.targets = labels
+            made.append(number)
+            yield DatasetExperience(dataset=as_classification_dataset(data))
+
+    model = SimpleCNN(num_classes=512)
+    strategy = Naive(
+        model=model, optimizer=torch.optim.SGD(model.parameters(), lr=0.01),
+        train_mb_size=10, train_epochs=1, evaluator=None,
+    )  # fmt: skip
+    for experience in CLStream("train", experiences()):
+        strategy.train(experience)
+        most_mib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        print(f"experience {experience.current_experience}: {len(made)} made, {most_mib:.0f} MiB")
+
+
+def judge_drift(still: int) -> None:
+    """Tell what river's ADWIN finds."""
+    for name, drift in DRIFTS.items():
+        means = _means({**PLAIN, "drift": drift}, ONSET - BEFORE, ONSET + AFTER)
+        found = {
+            signal: [place - BEFORE for place in _changes(values)]
+            for signal, values in _signals(means).items()
+        }
+        first = min(
+            (place for places in found.values() for place in places if place >= 0), default=None
+        )
+        early = sum(place < 0 for places in found.values() for place in places)
+        told = "not found" if first is None or first > WITHIN else f"found after {first} frames"
+        print(f"{name}: {told}; {early} before; {found}", flush=True)
+    means = _means(PLAIN, 0, still)
+    found = {signal: _changes(values) for signal, values in _signals(means).items()}
+    print(f"none in {still} frames: {found}")
+
+
+def _means(course: dict[str, Any], begin: int, end: int) -> np.ndarray:
+    """Return (N, 3): the mean colour of each picture, 0 to 255."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "course.yaml"
+        path.write_text(yaml.safe_dump(course))
+        with streams.open(path, seed=SEED, views=("rgb",)) as stream:
+            return np.array([frame["rgb"].mean(axis=(0, 1)) for frame in stream[begin:end]])
+
+
+def _signals(means: np.ndarray) -> dict[str, np.ndarray]:
+    red, green, blue = means.T / 255.0
+    return {"red": red, "green": green, "blue": blue, "red / blue": red / blue / 4.0}
+
+
+def _changes(values: np.ndarray) -> list[int]:
+    from river.drift import ADWIN
+
+    detector, found = ADWIN(), []
+    for place, value in enumerate(values.tolist()):
+        detector.update(value)
+        if detector.drift_detected:
+            found.append(place)
+    return found
+
+
+if __name__ == "__main__":
+    main()
