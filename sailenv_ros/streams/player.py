@@ -24,6 +24,7 @@ from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.views import VIEWS
 
 __all__ = ["EYE", "Player"]
 
@@ -32,6 +33,9 @@ EYE = "stream_eye"
 
 TICK = 50
 """Frames from one change of light and picture to the next."""
+
+_LIGHT = ("lighting", "measurement")
+"""Sources of views on which those of the next frame do not depend."""
 
 SWAY_M, SWAY_DEG, SWAY_HZ = 0.02, 1.5, 1.8
 """How who is carried sways: up and down, about the axis of view, steps per second."""
@@ -62,6 +66,8 @@ class Player:
     ) -> None:
         self._course, self._plan, self._seed = course, plan, seed
         self._views, self._drift_at = tuple(views), drift_at
+        truth = tuple(view for view in self._views if VIEWS[view].source not in _LIGHT)
+        self._earlier = truth or ("instance",)
         self._due = due_steps(course.rate, course.episode)
         self._library = SceneLibrary(baked_light=course.baked, drafts=False)
         self._core: SynchronousSimulation | None = None
@@ -88,7 +94,8 @@ class Player:
         assert self._at is not None
         if before >= 0 and not (self._at.offset == before and self._drawn is not None):
             self._go(before)
-            self._draw()
+            self._stand_for_capture()
+            self._world.capture(self._earlier, agent=EYE)
         self._go(place.offset)
         return self._draw()
 
@@ -162,12 +169,16 @@ class Player:
     def _shown(self, frame: int) -> int:
         return frame if self._drift_at is None else self._drift_at
 
-    def _draw(self) -> tuple[Frame, Mapping[str, DriftRecord]]:
-        core = self._world
+    def _stand_for_capture(self) -> None:
         assert self._at is not None
         assert self._stage is not None
         pose = _swayed(self._stage.eye(), self._at, self._due)
-        core.set_pose(self._stage.mounted(pose), agent=EYE)
+        self._world.set_pose(self._stage.mounted(pose), agent=EYE)
+
+    def _draw(self) -> tuple[Frame, Mapping[str, DriftRecord]]:
+        core = self._world
+        self._stand_for_capture()
+        assert self._at is not None
         _, records = self._course.state(self._shown(self._at.frame), self._seed)
         frame = self._told(core.capture(self._views, agent=EYE), self._at, records)
         self._drawn = frame, records

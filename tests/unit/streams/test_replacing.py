@@ -9,10 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import sailenv_ros.streams as streams
 from sailenv_ros.streams import StreamFrame
-from sailenv_ros.streams.replacing import replace_pieces
+from sailenv_ros.streams.replacing import fitting_scale, replace_pieces
 from sailenv_ros.types.labels import Instance
 from tests.support.lockstep_core import lockstep_core
 
@@ -26,8 +28,12 @@ objects:
   - {name: ball, asset: sphere, category: cup, scale: 0.2, position: [0, -1, 0.1], static: true}
   - {name: free, asset: "stool~round:12", position: [2, 1, 0.01], mass: 2}
   - {name: cube, asset: cube, category: box, scale: 0.3, position: [2, -2, 0.15], static: true}
+  - {name: shelf, asset: "table~side:5", position: [2, 0, 0], static: true}
+  - {name: on it, asset: cube, category: box, scale: 0.1, position: [2, 0, 0.62], static: true}
   - {name: chest, asset: "chest~dresser:3", position: [-2, -1.8, 0], static: true}
 """
+
+REPLACED = {"stool", "pot", "shelf"}
 
 COURSE = """
 version: 1
@@ -63,33 +69,64 @@ def test_each_piece_goes_once_in_a_life(frames: list[StreamFrame]) -> None:
     for before, after in pairwise(names):
         assert before.keys() == after.keys()
         changes.update(name for name in before if before[name] != after[name])
-    assert set(changes) == {"stool", "pot"}
+    assert set(changes) == REPLACED
     assert set(changes.values()) <= {2, 3}  # a draw may be of no piece that fits
     for name in changes:
         kinds = {one[name].rpartition(":")[0] for one in names}
         assert kinds == {names[0][name].rpartition(":")[0]}
 
 
-def test_another_piece_fills_the_same_box(tmp_path: Path) -> None:
-    """In the room: turned as the piece before it, to a micrometre."""
+def test_another_piece_stands_in_the_same_box(tmp_path: Path) -> None:
+    """With its origin where the other's was; what carries something keeps its height."""
     path = tmp_path / "room.yaml"
     path.write_text(ROOM)
 
-    def boxes(lives: float) -> dict[str, tuple[str, np.ndarray]]:
+    def boxes(lives: float) -> dict[str, tuple[str, np.ndarray, np.ndarray]]:
         with closing(lockstep_core(path)) as core:
             replace_pieces(core, core.info.instances, lives, 2, "room")
-            chosen = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-            found = {}
-            for one in core.info.instances:
-                matrix = core.get_object(one.name).pose.matrix()
-                own = np.array([one.low_m, one.high_m])[chosen, range(3)]
-                found[one.name] = (one.asset, own @ matrix[:3, :3].T + matrix[:3, 3])
-            return found
+            return {
+                one.name: (
+                    one.asset,
+                    core.get_object(one.name).pose.matrix(),
+                    np.array([one.low_m, one.high_m]),
+                )
+                for one in core.info.instances
+            }
 
     first, later = boxes(0.0), boxes(3.0)
-    assert {name for name in first if first[name][0] != later[name][0]} == {"stool", "pot"}
-    for name, (_, corners) in first.items():
-        np.testing.assert_allclose(later[name][1], corners, atol=1e-6)
+    assert {name for name in first if first[name][0] != later[name][0]} == REPLACED
+    for name, (_, matrix, box) in first.items():
+        np.testing.assert_allclose(later[name][1], matrix, atol=1e-9)
+        if name in REPLACED:
+            low, high = later[name][2]
+            slack = 0.02 * np.ptp(box, axis=0)
+            assert (low >= box[0] - slack).all()
+            assert (high <= box[1] + slack).all()
+            assert (high - low >= 0.7 * np.ptp(box, axis=0)).all()
+    assert later["shelf"][2][1, 2] == pytest.approx(first["shelf"][2][1, 2], abs=1e-6)
+
+
+@given(
+    size=st.tuples(*[st.floats(0.2, 3.0)] * 3),
+    before=st.tuples(*[st.floats(0.2, 3.0)] * 3),
+    carries=st.booleans(),
+)
+def test_a_scale_fits_or_there_is_none(
+    size: tuple[float, ...], before: tuple[float, ...], carries: bool
+) -> None:
+    """Boxes on the floor around their origins; the box that the scale gives is checked itself."""
+    own, old = (np.array([[-x / 2, -y / 2, 0.0], [x / 2, y / 2, z]]) for x, y, z in (size, before))
+    scale = fitting_scale(own, old, carries=carries)
+    possible = min(np.divide(before, size))
+    if scale is None:
+        shares = possible * np.array(size) / before
+        assert carries or shares.min() < 0.7 or not 0.75 <= possible <= 1.25
+        return
+    made = scale * np.array(size)
+    assert (made <= np.array(before) * 1.02 + 1e-9).all()
+    assert (made >= 0.7 * np.array(before) - 1e-9).all()
+    if carries:
+        assert made[2] == pytest.approx(before[2])
 
 
 def test_what_is_recorded_is_the_number_of_lives(frames: list[StreamFrame]) -> None:
