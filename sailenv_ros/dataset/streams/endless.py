@@ -69,6 +69,7 @@ class EndlessJob:
         return {
             "stream": self.course.name,
             "course_sha256": hashlib.sha256(course).hexdigest(),
+            "rate_hz": self.course.rate,
             "rooms": generation_state(),
             "seed": self.seed,
             "begin": self.begin,
