@@ -30,8 +30,8 @@ __all__ = ["surface", "surface_names"]
 Vector3 = tuple[float, float, float]
 Recipe: TypeAlias = Callable[[np.random.Generator, Floats], SurfaceMaps]
 
-_KEPT = 24
-"""Surfaces that are kept, of 12 MB each."""
+_KEPT = 8
+"""Surfaces that are kept, of 12 MB each: more than a room has. Others are read from files."""
 
 
 @dataclass(frozen=True, slots=True)

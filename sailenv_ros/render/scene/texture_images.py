@@ -25,15 +25,20 @@ _TEXEL_OF_PIXEL = np.stack([*[_ROOT_OF_LINEAR] * 3, np.arange(256, dtype=np.uint
 """(1, 256, 4) uint8: the same for red, green and blue; alpha stays."""
 
 
+LARGER = 1.25
+"""A texture that is at most so many times as large as a size is brought to it: the next one takes
+four to sixteen times the memory."""
+
+
 def array_of(texture: Texture | None) -> int:
-    """Return the place in `SIZES_PX` of the size that holds a texture; the last for larger ones.
+    """Return the place in `SIZES_PX` of the size that suits a texture; the last for larger ones.
 
     No texture lies in array -1.
     """
     if texture is None:
         return -1
     longest = max(texture.shape[:2])
-    return next((i for i, edge in enumerate(SIZES_PX) if longest <= edge), len(SIZES_PX) - 1)
+    return next((i for i, edge in enumerate(SIZES_PX) if longest <= LARGER * edge), len(SIZES_PX) - 1)
 
 
 def square_texels(texture: Texture, edge: int, *, is_colour: bool) -> NDArray[np.uint8]:
