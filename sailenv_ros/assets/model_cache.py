@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields
+from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +58,7 @@ def cached_parts(
 
 def _arrays_of(parts: Parts, hulls: Hulls) -> Arrays:
     arrays: dict[str, NDArray[Any]] = {}
-    textures: dict[int, str] = {}
+    textures: dict[bytes, str] = {}
     materials: dict[int, int] = {}
     told_materials: list[dict[str, Any]] = []
     told_parts = []
@@ -71,7 +72,9 @@ def _arrays_of(parts: Parts, hulls: Hulls) -> Arrays:
             for name in _TEXTURES:
                 texture = getattr(material, name)
                 if texture is not None:
-                    told[name] = textures.setdefault(id(texture), f"texture {len(textures)}")
+                    # Files decode the picture of a hundred books a hundred times.
+                    key = blake2b(repr(texture.shape).encode() + texture.tobytes()).digest()
+                    told[name] = textures.setdefault(key, f"texture {len(textures)}")
                     arrays[told[name]] = texture
             told_materials.append(told)
         told_parts.append([list(part.names), materials[id(material)]])

@@ -38,7 +38,8 @@ def array_of(texture: Texture | None) -> int:
     if texture is None:
         return -1
     longest = max(texture.shape[:2])
-    return next((i for i, edge in enumerate(SIZES_PX) if longest <= LARGER * edge), len(SIZES_PX) - 1)
+    suits = (place for place, edge in enumerate(SIZES_PX) if longest <= LARGER * edge)
+    return next(suits, len(SIZES_PX) - 1)
 
 
 def square_texels(texture: Texture, edge: int, *, is_colour: bool) -> NDArray[np.uint8]:
