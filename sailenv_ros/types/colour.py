@@ -17,6 +17,7 @@ from sailenv_ros.errors import InvalidRequest
 __all__ = [
     "LINEAR_OF_SRGB8",
     "LUMINANCE",
+    "XYZ_FROM_RGB",
     "hex_from_linear",
     "linear_from_hex",
     "linear_from_srgb",
@@ -48,6 +49,17 @@ LINEAR_OF_SRGB8.flags.writeable = False
 LUMINANCE: NDArray[np.float64] = np.array([0.2126, 0.7152, 0.0722])
 """(3,) float64: share of linear red, green and blue in luminance (ITU-R BT.709)."""
 LUMINANCE.flags.writeable = False
+
+
+XYZ_FROM_RGB: NDArray[np.float64] = np.array(
+    [
+        [0.4124564, 0.3575761, 0.1804375],
+        [0.2126729, 0.7151522, 0.0721750],
+        [0.0193339, 0.1191920, 0.9503041],
+    ]
+)
+"""(3, 3) float64: CIE 1931 XYZ of linear red, green and blue (IEC 61966-2-1)."""
+XYZ_FROM_RGB.flags.writeable = False
 
 
 def linear_from_srgb8(what: str, colour: Iterable[Any]) -> Rgb:

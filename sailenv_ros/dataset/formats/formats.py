@@ -34,6 +34,7 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         "colmap": "colmap.ColmapExport",
         "nerfstudio": "nerfstudio.NerfstudioExport",
         "vqa": "vqa.VqaExport",
+        "vqa_parquet": "vqa_parquet.VqaParquetExport",
     }
 )
 """Module in this folder and class of each format, by its name."""

@@ -8,38 +8,24 @@ a JSON text of what was drawn at random, if anything was.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
-from pathlib import Path
-from typing import Any, ClassVar
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.annotated_objects import annotated_objects
-from sailenv_ros.dataset.formats.data_files import discard_drafts
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.dataset.formats.dataset_format import Sample, WriteResult
 from sailenv_ros.dataset.formats.images import frame_record
 from sailenv_ros.dataset.formats.object_records import object_record
-from sailenv_ros.dataset.formats.row_tables import RowTable
-from sailenv_ros.extras import need
+from sailenv_ros.dataset.formats.row_tables import TableFormat
 from sailenv_ros.frame.pictures.codecs import encode_png
 
 __all__ = ["ParquetExport"]
 
 
-class ParquetExport(DatasetFormat):
+class ParquetExport(TableFormat):
     """``data/<split>-00000.parquet``, one for each split, or for each shard of a large data set."""
-
-    is_shard: ClassVar[bool] = True
-    resumable: ClassVar[bool] = False
-    packages: ClassVar[tuple[str, ...]] = ("pyarrow",)
-
-    def __init__(self, folder: Path) -> None:
-        super().__init__(folder)
-        self._arrow: Any = need("pyarrow", "the format parquet")
-        self._open = ExitStack()
-        self._tables: dict[str, RowTable] = {}
 
     def add(self, sample: Sample) -> WriteResult:
         """Append a frame."""
@@ -57,26 +43,9 @@ class ParquetExport(DatasetFormat):
             "objects": [object_record(found.table, index) for index in range(len(found.table))],
             **{view: _cell(values) for view, values in frame.views.items()},
         }
-        self._table(sample.split or "train", frame.views).append(row)
+        table = self._table(sample.split, lambda: _schema(self._arrow, frame.views))
+        table.append(row)
         return WriteResult(written={"rows": 1}, left_out=found.left_out)
-
-    def finish(self, records: Sequence[Record]) -> None:
-        """Write what is left and close the files."""
-        for table in self._tables.values():
-            table.finish()
-        self._tables.clear()
-        self._open.close()
-
-    def close(self) -> None:
-        """Remove what is not complete."""
-        self._tables.clear()
-        discard_drafts(self._open)
-
-    def _table(self, split: str, views: Mapping[str, NDArray[Any]]) -> RowTable:
-        if split not in self._tables:
-            path = self.folder / "data" / f"{split}-{self.part:05d}.parquet"
-            self._tables[split] = RowTable(self._open, path, _schema(self._arrow, views))
-        return self._tables[split]
 
 
 def _is_image(values: NDArray[Any]) -> bool:

@@ -2,6 +2,7 @@
 
 A line of JSON for each question, and the same as LLaVA's conversations:
 https://github.com/haotian-liu/LLaVA/blob/main/docs/Finetune_Custom_Data.md
+Then all questions on a picture as one conversation, as ShareGPT has it.
 """
 
 from __future__ import annotations
@@ -13,24 +14,34 @@ from typing import Any, ClassVar
 
 from sailenv_ros.dataset.formats.data_files import write_bytes, write_png
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
-from sailenv_ros.frame.language import questions, referring_expressions, scene_graph
+from sailenv_ros.frame.language import (
+    Question,
+    SceneGraph,
+    questions,
+    referring_expressions,
+    scene_graph,
+)
 
-__all__ = ["VqaExport"]
+__all__ = ["VqaExport", "questions_of"]
+
+_IMAGE = "<image>\n"
+"""Stands for the picture in a conversation."""
 
 
 class VqaExport(DatasetFormat):
-    """``images/``, and for each split ``….jsonl``, ``…_llava.json``, ``…_referring.jsonl``."""
+    """``images/``, and files for each split.
+
+    ``SPLIT.jsonl``, ``SPLIT_referring.jsonl``, ``SPLIT_llava.json``, ``SPLIT_sharegpt.json``. Where
+    frames have the view ``albedo``, colours are asked for.
+    """
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "instance")
 
     def add(self, sample: Sample) -> WriteResult:
         """Write the picture, and keep what is asked of it."""
-        info, name = sample.scene_info("vqa"), f"{sample.stem}.png"
         graph = scene_graph(sample.frame)
-        write_png(self.folder / "images" / name, sample.frame["rgb"])
-        seen = {one.category for one in graph.objects.values()}
-        elsewhere = {one.category for one in info.instances if one.category_id} - seen
-        asked = questions(graph, seed=sample.number, absent=elsewhere)
+        write_png(self.folder / "images" / f"{sample.stem}.png", sample.frame["rgb"])
+        asked = questions_of(sample, graph)
         meant = [
             {"object": one.object, "text": one.text, "box": list(graph.objects[one.object].box)}
             for one in referring_expressions(graph)
@@ -44,23 +55,36 @@ class VqaExport(DatasetFormat):
         """Write the files of each split."""
         for split in sorted({record.split for record in records}):
             own = [record for record in records if record.split == split]
-            lines, turns, meant = [], [], []
+            lines, turns, talks, meant = [], [], [], []
             for record in own:
                 image = f"images/{record.number:06d}.png"
                 for number, one in enumerate(record.value["questions"]):
                     id_ = f"{record.number:06d}_{number}"
                     lines.append({"id": id_, "image": image, **one})
                     turns.append({"id": id_, "image": image, "conversations": _turns(one)})
+                said = [turn for one in record.value["questions"] for turn in _turns(one, "")]
+                if said:
+                    said[0]["value"] = f"{_IMAGE}{said[0]['value']}"
+                    talks.append({"conversations": said, "images": [image]})
                 meant += [{"image": image, **one} for one in record.value["referring"]]
             stem = split or "all"
             write_bytes(self.folder / f"{stem}.jsonl", _lines(lines))
             write_bytes(self.folder / f"{stem}_referring.jsonl", _lines(meant))
-            write_bytes(self.folder / f"{stem}_llava.json", json.dumps(turns, indent=1).encode())
+            for form, told in (("llava", turns), ("sharegpt", talks)):
+                path = self.folder / f"{stem}_{form}.json"
+                write_bytes(path, json.dumps(told, indent=1).encode())
 
 
-def _turns(one: dict[str, Any]) -> list[dict[str, str]]:
+def questions_of(sample: Sample, graph: SceneGraph) -> tuple[Question, ...]:
+    """Return the questions on a frame; those on what is not there are of its scene's categories."""
+    seen = {one.category for one in graph.objects.values()}
+    known = {one.category for one in sample.scene_info("vqa").instances if one.category_id}
+    return questions(graph, seed=sample.number, absent=known - seen)
+
+
+def _turns(one: dict[str, Any], begin: str = _IMAGE) -> list[dict[str, str]]:
     return [
-        {"from": "human", "value": f"<image>\n{one['text']}"},
+        {"from": "human", "value": f"{begin}{one['text']}"},
         {"from": "gpt", "value": one["answer"]},
     ]
 

@@ -5,12 +5,14 @@ Data types and pure functions on a `Frame`. Every sentence comes with the number
 
 from __future__ import annotations
 
+from sailenv_ros.frame.language.colour_words import COLOUR_WORDS
 from sailenv_ros.frame.language.questions import QUESTION_KINDS, Question, questions
 from sailenv_ros.frame.language.referring import Referring, referring_expressions
 from sailenv_ros.frame.language.scene_graph import RELATIONS, Relation, SceneGraph, scene_graph
 from sailenv_ros.frame.language.seen_objects import SeenObject
 
 __all__ = [
+    "COLOUR_WORDS",
     "QUESTION_KINDS",
     "RELATIONS",
     "Question",

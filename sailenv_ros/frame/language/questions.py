@@ -92,6 +92,7 @@ class _Asker:
         for one in named_objects:
             yield self._length("distance", one, one.distance_m)
             yield self._length("height", one, one.height_m)
+            yield from self._colour(one)
             yield from self._support(one)
         yield from self._pairs(named_objects)
 
@@ -124,6 +125,12 @@ class _Asker:
             kind, metres(value), (one,), value=value, the=self._names[one.id],
             proof=({"id": one.id, f"{kind}_m": value},),
         )  # fmt: skip
+
+    def _colour(self, one: SeenObject) -> Iterator[Question]:
+        if one.colour and one.colour not in self._names[one.id]:
+            share = one.colours[one.colour]
+            fact: Fact = {"id": one.id, "colour": one.colour, "share": share}
+            yield self._asked("colour", one.colour, (one,), the=self._names[one.id], proof=(fact,))
 
     def _support(self, one: SeenObject) -> Iterator[Question]:
         found = self._graph.of("on", one.id)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from sailenv_ros.frame.language.scene_graph import SceneGraph, holds
-from sailenv_ros.frame.language.seen_objects import SeenObject
+from sailenv_ros.frame.language.seen_objects import NOT_OF_COLOUR, SeenObject
 from sailenv_ros.frame.language.wording import named
 
 __all__ = ["Referring", "referring_expressions"]
@@ -69,6 +69,13 @@ def _of(target: SeenObject, graph: SceneGraph) -> Iterator[Referring]:
                 category=target.category,
                 values={one.id: measure(one) for one in (target, *rivals)},
             )
+    if target.colour and all(_is_not(target.colour, one) for one in rivals):
+        yield Referring(
+            text=f"the {target.colour} {target.category}",
+            object=target.id,
+            category=target.category,
+            values={one.id: {"share": one.colours[target.colour]} for one in (target, *rivals)},
+        )
     for relation in graph.of("on", target.id):
         carrier = graph.objects[relation.object]
         same = [one for one in graph.objects.values() if one.category == carrier.category]
@@ -98,6 +105,11 @@ _FOREMOST: Mapping[str, tuple[str, Callable[[SeenObject], Mapping[str, float]], 
 }  # fmt: skip
 """Expression for what has a relation to all others of its category, the numbers that tell it, and
 whether the others have to be clear."""
+
+
+def _is_not(colour: str, one: SeenObject) -> bool:
+    """Return whether something is seen well, and has hardly any pixel of a colour."""
+    return one.clear and one.colours[colour] <= NOT_OF_COLOUR
 
 
 def _is_off(one: SeenObject, carrier: SeenObject) -> bool:

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.language.colour_words import COLOUR_WORDS, colour_words
 from sailenv_ros.frame.truth.object_table import ObjectTable
 from sailenv_ros.types.labels import ROOM_PARTS, UNLABELLED_CATEGORY
 
-__all__ = ["LEAST_SHARE", "SeenObject", "seen_objects", "seen_parts"]
+__all__ = ["LEAST_SHARE", "NOT_OF_COLOUR", "SeenObject", "seen_objects", "seen_parts"]
 
 LEAST_SHARE = 2e-4
 """Share of the picture from which an object is seen; with less it may be there, and nothing is said
 that would be wrong if it were, or if it were not."""
+
+OF_COLOUR, NOT_OF_COLOUR = 0.8, 0.05
+"""Share of its pixels from which an object is of a colour, and below which it clearly is not."""
 
 NOT_NAMED = ROOM_PARTS | {"plane"}
 """Categories that no sentence names: parts of rooms, and the ground outside of them."""
@@ -45,6 +50,8 @@ class SeenObject:
         Of that box, along the object's own axes [m].
     turn : (3, 3) float64
         Rotation world-from-object.
+    colours : mapping of str to float
+        Shares of its pixels by `COLOUR_WORDS`; empty for frames without the view ``albedo``.
     """
 
     id: int
@@ -57,6 +64,13 @@ class SeenObject:
     corners_m: NDArray[np.float64]
     size_m: NDArray[np.float64]
     turn: NDArray[np.float64]
+    colours: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def colour(self) -> str:
+        """Word for its colour; empty if there is none, or several."""
+        found = (word for word, share in self.colours.items() if word and share >= OF_COLOUR)
+        return next(found, "")
 
     @property
     def bottom_m(self) -> float:
@@ -95,6 +109,7 @@ def seen_objects(frame: Frame) -> tuple[SeenObject, ...]:
     for row in np.flatnonzero(table.visible_pixels).tolist():
         owned.setdefault(_whole_of(table, row, row_of), []).append(row)
     least = LEAST_SHARE * frame.views["instance"].size
+    colours = _colours_of(frame, {id_: table.ids[rows] for id_, rows in owned.items()})
     found = []
     for id_, rows in sorted(owned.items()):
         row = row_of[id_]
@@ -117,6 +132,7 @@ def seen_objects(frame: Frame) -> tuple[SeenObject, ...]:
                 corners_m=table.corners[row],
                 size_m=table.box_sizes[row],
                 turn=_rotation(table.world_from_object[row]),
+                colours=colours.get(id_, {}),
             )
         )
     return tuple(found)
@@ -130,6 +146,23 @@ def seen_parts(frame: Frame) -> frozenset[str]:
     table = frame.objects
     rows = np.flatnonzero(np.asarray(table.visible_pixels) * (table.parents != 0))
     return frozenset(table.categories[row] for row in rows.tolist())
+
+
+def _colours_of(
+    frame: Frame, ids_of: Mapping[int, NDArray[np.integer[Any]]]
+) -> dict[int, dict[str, float]]:
+    """Return the shares of colours of some objects, each with its parts."""
+    if "albedo" not in frame.views:
+        return {}
+    instance, count = frame.views["instance"].astype(np.int64), len(COLOUR_WORDS)
+    words = colour_words(frame.views["albedo"])
+    pixels = np.bincount((instance * count + words).reshape(-1), minlength=65536 * count)
+    by_id = pixels.reshape(-1, count)
+    sums = {id_: by_id[ids].sum(axis=0) for id_, ids in ids_of.items()}
+    return {
+        id_: {word: float(one / total.sum()) for word, one in zip(COLOUR_WORDS, total, strict=True)}
+        for id_, total in sums.items()
+    }
 
 
 def _whole_of(table: ObjectTable, row: int, row_of: Mapping[int, int]) -> int:

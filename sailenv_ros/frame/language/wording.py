@@ -18,6 +18,7 @@ PHRASES: Mapping[str, Sequence[str]] = {
         "What is the distance from the camera to {the} in metres?",
     ),
     "height": ("How tall is {the}, in metres?", "What is the height of {the} in metres?"),
+    "colour": ("What colour is {the}?", "Which colour does {the} have?"),
     "nearer": (
         "Which is nearer to the camera, {the} or {other}?",
         "Is {the} or {other} closer to the camera?",

@@ -11,18 +11,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.types.colour import XYZ_FROM_RGB
+
 __all__ = ["balance_factors", "white_balanced"]
 
 DAYLIGHT_MIRED = 1e6 / 6504.0
-
-_RGB_FROM_XYZ = np.array(
-    [
-        [3.2404542, -1.5371385, -0.4985314],
-        [-0.9692660, 1.8760108, 0.0415560],
-        [0.0556434, -0.2040259, 1.0572252],
-    ]
-)
-"""Linear sRGB: IEC 61966-2-1."""
 
 
 def white_balanced(radiance: NDArray[np.float16], mired: float) -> NDArray[np.float16]:
@@ -66,5 +59,5 @@ def _white(kelvin: float) -> NDArray[np.float64]:
         y = ((-0.9549476 * x - 1.37418593) * x + 2.09137015) * x - 0.16748867
     else:
         y = ((3.0817580 * x - 5.87338670) * x + 3.75112997) * x - 0.37001483
-    white: NDArray[np.float64] = _RGB_FROM_XYZ @ np.array([x / y, 1.0, (1.0 - x - y) / y])
-    return white
+    xyz = [x / y, 1.0, (1.0 - x - y) / y]
+    return np.asarray(np.linalg.solve(XYZ_FROM_RGB, xyz), np.float64)

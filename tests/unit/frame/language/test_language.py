@@ -124,7 +124,7 @@ def test_expressions_are_true_of_one_object(graph: SceneGraph) -> None:
 
 def test_answers_follow_from_pixels_and_places(graph: SceneGraph, frame: Frame) -> None:
     asked = questions(graph, seed=4, absent=["bed", "couch", "lamp", "toilet"])
-    assert {one.kind for one in asked} == set(QUESTION_KINDS)
+    assert {one.kind for one in asked} == set(QUESTION_KINDS) - {"colour"}  # without `albedo`
     by_id = graph.objects
     for one in asked:
         first = by_id[one.objects[0]] if one.objects else None
