@@ -34,6 +34,7 @@ FORMATS: Mapping[str, str] = MappingProxyType(
         "colmap": "colmap.ColmapExport",
         "nerfstudio": "nerfstudio.NerfstudioExport",
         "vqa": "vqa.VqaExport",
+        "cosmos": "cosmos.CosmosExport",
         "vqa_parquet": "vqa_parquet.VqaParquetExport",
     }
 )

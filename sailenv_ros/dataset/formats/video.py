@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
-from sailenv_ros.errors import RecordingError
+from sailenv_ros.dataset.formats.video_file import VideoFile
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.pictures.colours import view_picture
-from sailenv_ros.system.files import make_folder, write_errors
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.views import view_spec
 
@@ -34,52 +33,18 @@ class VideoExport(DatasetFormat):
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
-        self._path = folder / "preview.mp4"
-        self._draft = folder / ".preview.unfinished.mp4"
-        self._waiting: list[NDArray[np.uint8]] = []
-        self._first_ns: int | None = None
-        self._writer: cv2.VideoWriter | None = None
-        self._shape: tuple[int, ...] = ()
+        self._file = VideoFile(folder / "preview.mp4")
 
     def add(self, sample: Sample) -> WriteResult:
         """Add a picture."""
         frame, info = sample.frame, sample.frame.info
         picture = _sheet(frame, info.categories if info else CategoryTable([]))
-        if self._writer is None:
-            self._waiting.append(picture)
-            if self._first_ns is not None and frame.stamp_ns > self._first_ns:
-                self._begin(1e9 / (frame.stamp_ns - self._first_ns))
-            self._first_ns = frame.stamp_ns
-        else:
-            self._write(picture)
+        self._file.add(picture, frame.stamp_ns)
         return WriteResult(written={"pictures": 1})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Finish the file."""
-        if self._writer is None and self._waiting:
-            self._begin(1.0)
-        if self._writer is not None:
-            self._writer.release()
-            with write_errors(self._path):
-                self._draft.replace(self._path)
-
-    def _begin(self, rate_hz: float) -> None:
-        height, width = self._waiting[0].shape[:2]
-        code = cv2.VideoWriter.fourcc(*"mp4v")
-        self._shape = self._waiting[0].shape
-        make_folder(self._path.parent)
-        self._writer = cv2.VideoWriter(str(self._draft), code, rate_hz, (width, height))
-        if not self._writer.isOpened():
-            raise RecordingError(f"{self._path} cannot be written")
-        for picture in self._waiting:
-            self._write(picture)
-        self._waiting.clear()
-
-    def _write(self, picture: NDArray[np.uint8]) -> None:
-        if picture.shape != self._shape:
-            raise RecordingError("a video needs frames of one size, with the same views")
-        assert self._writer is not None
-        self._writer.write(picture[..., ::-1])
+        self._file.finish()
 
 
 def _sheet(frame: Frame, table: CategoryTable) -> NDArray[np.uint8]:

@@ -5,6 +5,7 @@ Data types and pure functions on a `Frame`. Every sentence comes with the number
 
 from __future__ import annotations
 
+from sailenv_ros.frame.language.captions import Caption, caption
 from sailenv_ros.frame.language.colour_words import COLOUR_WORDS
 from sailenv_ros.frame.language.questions import QUESTION_KINDS, Question, questions
 from sailenv_ros.frame.language.referring import Referring, referring_expressions
@@ -15,11 +16,13 @@ __all__ = [
     "COLOUR_WORDS",
     "QUESTION_KINDS",
     "RELATIONS",
+    "Caption",
     "Question",
     "Referring",
     "Relation",
     "SceneGraph",
     "SeenObject",
+    "caption",
     "questions",
     "referring_expressions",
     "scene_graph",

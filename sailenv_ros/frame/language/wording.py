@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-__all__ = ["PHRASES", "metres", "named", "plural"]
+__all__ = ["PHRASES", "counted", "listed", "metres", "named", "plural"]
 
 PHRASES: Mapping[str, Sequence[str]] = {
     "existence": ("Is there {a} in the picture?", "Do you see {a}?", "Can {a} be seen?"),
@@ -32,6 +32,8 @@ PHRASES: Mapping[str, Sequence[str]] = {
 }
 """Phrasings of each kind of question, of which one is drawn."""
 
+_NUMBERS = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+
 _VOWELS = "aeiou"
 _IRREGULAR = {"knife": "knives", "shelf": "shelves", "dish": "dishes", "glasses": "glasses"}
 
@@ -53,6 +55,22 @@ def plural(category: str) -> str:
     if last.endswith("y") and last[-2] not in _VOWELS:
         return f"{category[:-1]}ies"
     return f"{category}s"
+
+
+def counted(category: str, count: int | None) -> str:
+    """Return so many of a category in words: ``a cup``, ``two cups``; some if None."""
+    if count == 1:
+        return named(category, definite=False)
+    if count is None:
+        return f"some {plural(category)}"
+    few = 2 <= count < 2 + len(_NUMBERS)
+    return f"{_NUMBERS[count - 2] if few else 'many'} {plural(category)}"
+
+
+def listed(things: Sequence[str]) -> str:
+    """Return things as a sentence lists them: ``a desk, two cups and a lamp``."""
+    *first, last = things
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def metres(value: float) -> str:

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-import pyarrow.parquet as parquet
 import pytest
 
 from sailenv_ros.dataset.formats import DatasetWriter
+from sailenv_ros.extras import need
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.language import (
     COLOUR_WORDS,
@@ -128,7 +128,9 @@ def test_a_table_has_a_row_for_each_question(frame: Frame, tmp_path: Path) -> No
         writer.finish()
     lines = (tmp_path / "vqa" / "all.jsonl").read_text().splitlines()
     asked = [json.loads(line) for line in lines]
-    table = parquet.read_table(tmp_path / "vqa_parquet" / "data" / "train-00000.parquet")
+    table = need("pyarrow.parquet", "a test").read_table(
+        tmp_path / "vqa_parquet" / "data" / "train-00000.parquet"
+    )
     rows = table.to_pylist()
     assert [(row["question"], row["answer"]) for row in rows] == [
         (one["text"], one["answer"]) for one in asked

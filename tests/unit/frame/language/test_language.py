@@ -17,11 +17,12 @@ from sailenv_ros.frame.language import (
     QUESTION_KINDS,
     RELATIONS,
     SceneGraph,
+    caption,
     questions,
     referring_expressions,
     scene_graph,
 )
-from sailenv_ros.frame.language.wording import metres, named, plural
+from sailenv_ros.frame.language.wording import counted, listed, metres, named, plural
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
@@ -187,7 +188,32 @@ def test_parts_are_not_counted(graph: SceneGraph) -> None:
     assert not any(one.category == "book" for one in referring_expressions(with_parts))
 
 
+def test_a_caption_names_what_is_clear_and_what_lies_on_what(graph: SceneGraph) -> None:
+    """The largest first; a pen that is hardly seen leaves their number open."""
+    told = caption(graph, place="office")
+    first, *rest = told.text.split(". ")
+    assert first == ("An office with two chairs, a desk, a shelf, two cups, a book and some pens")
+    pixels = Counter[str]()
+    for one in graph.objects.values():
+        pixels[one.category] += one.pixels
+    order = [name for name, _ in pixels.most_common()]
+    assert order == ["chair", "desk", "shelf", "cup", "book", "pen"]
+    assert set(". ".join(rest).rstrip(".").split(". ")) == {
+        "A cup is on the desk", "A book is on the desk", "A pen is on the desk",
+    }  # fmt: skip
+    assert {graph.objects[id_].clear for id_ in told.objects} == {True}
+    assert all(one in graph.relations for one in told.relations)
+    assert caption(
+        SceneGraph(width=320, objects={}, relations=()), place="attic"
+    ).text == "An attic."  # fmt: skip
+
+
 def test_words() -> None:
+    assert [counted("knife", count) for count in (1, 2, 10, 11, None)] == [
+        "a knife", "two knives", "ten knives", "many knives", "some knives",
+    ]  # fmt: skip
+    assert listed(["a"]) == "a"
+    assert listed(["a", "b", "c"]) == "a, b and c"
     assert [plural(word) for word in ("cup", "wall shelf", "dish", "box", "toy", "battery")] == [
         "cups", "wall shelves", "dishes", "boxes", "toys", "batteries",
     ]  # fmt: skip

@@ -1,0 +1,123 @@
+"""Frames → videos that control a video model, with a caption, as NVIDIA's Cosmos Transfer has them.
+
+``videos/``, ``metas/`` (captions), and a folder for each control: ``depth``, ``seg``, ``edge`` and
+``vis`` (blurred). A clip is what has one epoch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import ClassVar
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.dataset.formats.data_files import write_bytes
+from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.dataset.formats.video_file import VideoFile
+from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.language import caption, scene_graph
+from sailenv_ros.types.labels import colour_instances
+
+__all__ = ["CosmosExport"]
+
+Picture = NDArray[np.uint8]
+
+NEAREST_M, FARTHEST_M = 0.4, 12.0
+"""Depths that are white and black: inverse depth is linear between them, as estimators give it."""
+
+CANNY = 100, 200
+"""Thresholds of the edges."""
+
+BLUR_SHARE = 0.02
+"""Standard deviation of the blur, in heights of the picture."""
+
+
+class CosmosExport(DatasetFormat):
+    """``0000.mp4`` in ``videos`` and the controls' folders, and ``metas/0000.txt``."""
+
+    views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "instance")
+    is_sequence: ClassVar[bool] = True
+    resumable: ClassVar[bool] = False
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder)
+        self._clip = -1
+        self._epoch: int | None = None
+        self._files: dict[str, VideoFile] = {}
+
+    def add(self, sample: Sample) -> WriteResult:
+        """Add a frame to each video; the first of a clip is described."""
+        frame, written = sample.frame, {"pictures": 1}
+        if frame.epoch != self._epoch:
+            self._end()
+            self._clip, self._epoch = self._clip + 1, frame.epoch
+            self._files = {
+                name: VideoFile(self.folder / name / f"{self._clip:04d}.mp4")
+                for name in ("videos", *_CONTROLS)
+            }
+            place = _place_of(sample.scene_info("cosmos").scene)
+            text = caption(scene_graph(frame), place=place).text
+            write_bytes(self.folder / "metas" / f"{self._clip:04d}.txt", f"{text}\n".encode())
+            written["clips"] = 1
+        self._files["videos"].add(_even(frame["rgb"]), frame.stamp_ns)
+        for name, control in _CONTROLS.items():
+            self._files[name].add(_even(control(frame)), frame.stamp_ns)
+        return WriteResult(written=written)
+
+    def finish(self, records: Sequence[Record]) -> None:
+        """Finish the last clip."""
+        self._end()
+
+    def _end(self) -> None:
+        for file in self._files.values():
+            file.finish()
+        self._files = {}
+
+
+def _depth(frame: Frame) -> Picture:
+    near, far = 1.0 / NEAREST_M, 1.0 / FARTHEST_M
+    with np.errstate(divide="ignore"):
+        inverse = 1.0 / np.nan_to_num(frame["depth"], nan=NEAREST_M, posinf=np.inf)
+    share = ((inverse - far) / (near - far)).clip(0.0, 1.0)
+    return _grey((255.0 * share + 0.5).astype(np.uint8))
+
+
+def _segments(frame: Frame) -> Picture:
+    return colour_instances(frame["instance"])
+
+
+def _edges(frame: Frame) -> Picture:
+    return _grey(np.asarray(cv2.Canny(np.ascontiguousarray(frame["rgb"]), *CANNY), np.uint8))
+
+
+def _blurred(frame: Frame) -> Picture:
+    rgb = np.ascontiguousarray(frame["rgb"])
+    return np.asarray(cv2.GaussianBlur(rgb, (0, 0), BLUR_SHARE * len(rgb)), np.uint8)
+
+
+_CONTROLS: Mapping[str, Callable[[Frame], Picture]] = {
+    "depth": _depth,
+    "seg": _segments,
+    "edge": _edges,
+    "vis": _blurred,
+}
+"""Controls by the names of their folders."""
+
+
+def _grey(values: NDArray[np.uint8]) -> Picture:
+    return np.repeat(values[..., None], 3, axis=2)
+
+
+def _even(picture: Picture) -> Picture:
+    """Return a picture without the last row or column where their number is odd: videos need it."""
+    height, width = (length // 2 * 2 for length in picture.shape[:2])
+    return picture[:height, :width]
+
+
+def _place_of(scene: str) -> str:
+    """Return the kind of a generated room in words."""
+    prefix, _, kind = scene.partition(":")
+    return kind.partition(":")[0].replace("_", " ") if prefix == "generated" else "room"
