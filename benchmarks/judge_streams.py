@@ -3,13 +3,14 @@
     python benchmarks/judge_streams.py seek [--frames N]
     python benchmarks/judge_streams.py loader [--frames N] [--workers N]
     python benchmarks/judge_streams.py avalanche [--experiences N]
-    python benchmarks/judge_streams.py drift [--still N]
+    python benchmarks/judge_streams.py drift
+    python benchmarks/judge_streams.py still [--frames N]
 
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
 shuffled. `avalanche` trains its `Naive` on experiences that are made when they are asked for.
 `drift` gives the mean colour of pictures to river's ADWIN as it comes: a camera that walks in one
-room, one drift at a time, which begins at a frame; and many frames without any drift.
+room, one drift at a time, which begins at a frame. `still` does so without any drift.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -85,8 +86,9 @@ def main() -> None:
     loader.add_argument("--workers", type=int, default=2)
     avalanche = actions.add_parser("avalanche")
     avalanche.add_argument("--experiences", type=int, default=10)
-    drift = actions.add_parser("drift")
-    drift.add_argument("--still", type=int, default=100_000)
+    actions.add_parser("drift")
+    still = actions.add_parser("still")
+    still.add_argument("--frames", type=int, default=100_000)
     options = parser.parse_args()
     if options.action == "seek":
         judge_seeking(options.frames)
@@ -94,8 +96,10 @@ def main() -> None:
         judge_loader(options.frames, options.workers)
     elif options.action == "avalanche":
         judge_avalanche(options.experiences)
+    elif options.action == "drift":
+        judge_drift()
     else:
-        judge_drift(options.still)
+        judge_stillness(options.frames)
 
 
 def judge_seeking(count: int) -> None:
@@ -191,8 +195,8 @@ def judge_avalanche(count: int) -> None:
         print(f"experience {experience.current_experience}: {len(made)} made, {most_mib:.0f} MiB")
 
 
-def judge_drift(still: int) -> None:
-    """Tell what river's ADWIN finds."""
+def judge_drift() -> None:
+    """Tell what river's ADWIN finds of each drift."""
     for name, drift in DRIFTS.items():
         means = _means({**PLAIN, "drift": drift}, ONSET - BEFORE, ONSET + AFTER)
         found = {
@@ -205,9 +209,23 @@ def judge_drift(still: int) -> None:
         early = sum(place < 0 for places in found.values() for place in places)
         told = "not found" if first is None or first > WITHIN else f"found after {first} frames"
         print(f"{name}: {told}; {early} before; {found}", flush=True)
-    means = _means(PLAIN, 0, still)
-    found = {signal: _changes(values) for signal, values in _signals(means).items()}
-    print(f"none in {still} frames: {found}")
+
+
+def judge_stillness(count: int) -> None:
+    """Tell what river's ADWIN finds where nothing drifts, after every 10,000 frames."""
+    from river.drift import ADWIN
+
+    detectors = {signal: ADWIN() for signal in ("red", "green", "blue", "red / blue")}
+    found: dict[str, list[int]] = {signal: [] for signal in detectors}
+    for begin in range(0, count, 10_000):
+        end = min(count, begin + 10_000)
+        signals = _signals(_means(PLAIN, begin, end))
+        for signal, detector in detectors.items():
+            for place, value in enumerate(signals[signal].tolist(), start=begin):
+                detector.update(value)
+                if detector.drift_detected:
+                    found[signal].append(place)
+        print(f"{end} frames without drift: {found}", flush=True)
 
 
 def _means(course: dict[str, Any], begin: int, end: int) -> np.ndarray:
