@@ -33,7 +33,7 @@ import numpy as np
 from sailenv_ros import Simulation
 from sailenv_ros.scene_export import export_asset, export_scene
 from sailenv_ros.scene_export.contents import ExportedScene
-from sailenv_ros.scene_export.gathering import asset_world, exported_world
+from sailenv_ros.scene_export.gathering import agents_in, asset_world, exported_world
 from sailenv_ros.scene_export.glb import write_glb
 from sailenv_ros.scene_export.names import identifier
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -116,7 +116,7 @@ def judge_blender(one: Judged) -> str:
         return "Blender is not installed" if program is None else "Blender: rooms alone"
     lens = CameraIntrinsics(width=640, height=480)
     with closing(one.build()) as world, tempfile.TemporaryDirectory() as folder:
-        seen = exported_world(world, [AgentSpec(name="own", intrinsics=lens)])
+        seen = exported_world(world, agents_in(world, [AgentSpec(name="own", intrinsics=lens)]))
         file = Path(folder) / "seen.glb"
         file.write_bytes(write_glb(seen, "").data)
         script = str(Path(__file__).with_name("blender_ids.py"))
@@ -335,7 +335,7 @@ def _judge(name: str, folder: Path, judges: Path, formats: Sequence[str]) -> Non
             return library.build(name)
 
     with closing(build()) as world:
-        scene = exported_world(world, library.agents_of(world.scene))
+        scene = exported_world(world, agents_in(world, library.agents_of(world.scene)))
     for suffix in formats:
         file = folder / f"{name.replace(':', '_').replace('~', '_')}{suffix}"
         begun = time.monotonic()

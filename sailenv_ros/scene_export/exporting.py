@@ -10,8 +10,9 @@ from pathlib import Path
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene_export.contents import ExportedScene
 from sailenv_ros.scene_export.formats import ASSET_FORMATS, SCENE_FORMATS, Writer
-from sailenv_ros.scene_export.gathering import exported_asset, exported_world
+from sailenv_ros.scene_export.gathering import agents_in, exported_asset, exported_world
 from sailenv_ros.scene_export.saving import require_free, save
+from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.validation import checked_number
@@ -49,7 +50,7 @@ class ExportReport:
 
 
 def export_scene(
-    scene: str | Path,
+    scene: str | Path | Simulation,
     path: str | Path,
     *,
     at_s: float = 0.0,
@@ -60,13 +61,14 @@ def export_scene(
 
     Parameters
     ----------
-    scene : str or Path
-        Name of a scene, a scene file, or ``generated:KIND:SEED``.
+    scene : str, Path or Simulation
+        Name of a scene, a scene file, or ``generated:KIND:SEED``; or one that is simulated, as it
+        is now.
     path : str or Path
         Ends in one of `SCENE_FORMATS`. Meshes and pictures of some formats lie in a folder beside
         it, which is called like it.
     at_s : float
-        Simulated time of the moment that is written, at most 3600 [s].
+        Simulated time of the moment that is written, at most 3600 [s]; 0 for a Simulation.
     overwrite : bool
         True replaces both.
     allow_modules : bool
@@ -84,13 +86,25 @@ def export_scene(
     path = Path(path)
     steps = round(checked_number("at_s", at_s, 0.0, LONGEST_S, unit="s") * STEPS_PER_SECOND)
 
+    if isinstance(scene, Simulation):
+        if steps:
+            raise InvalidRequest("at_s", at_s, "0 for a Simulation: it is written as it is now")
+        running = scene
+        return _export(lambda: _present(running), path, SCENE_FORMATS, overwrite=overwrite)
+    described = scene
+
     def gathered() -> ExportedScene:
         library = SceneLibrary(allow_modules=allow_modules, baked_light=False)
-        with closing(library.build(scene)) as world:
+        with closing(library.build(described)) as world:
             world.step(steps)
-            return exported_world(world, library.agents_of(world.scene))
+            agents = agents_in(world, library.agents_of(world.scene))
+            return exported_world(world, agents)
 
     return _export(gathered, path, SCENE_FORMATS, overwrite=overwrite)
+
+
+def _present(simulation: Simulation) -> ExportedScene:
+    return simulation.read(lambda core: exported_world(core.world, core.agents))
 
 
 def export_asset(asset: str, path: str | Path, *, overwrite: bool = False) -> ExportReport:

@@ -41,19 +41,13 @@ from sailenv_ros.world.build import build_world
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.world import World
 
-__all__ = ["asset_world", "exported_asset", "exported_world", "scaled_shape"]
+__all__ = ["agents_in", "asset_world", "exported_asset", "exported_world", "scaled_shape"]
 
 Vector3 = tuple[float, float, float]
 
 
-def exported_world(world: World, agents: Iterable[AgentSpec] = ()) -> ExportedScene:
-    """Return a world as it is now, with the cameras of agents.
-
-    Raises
-    ------
-    UnknownName
-        If an agent follows a mover that is not there.
-    """
+def exported_world(world: World, agents: AgentTable | None = None) -> ExportedScene:
+    """Return a world as it is now, with the cameras of agents."""
     contents = world.snapshot().contents
     lamps = _Lamps(contents.lights)
     pieces: dict[int, list[ExportedPiece]] = {}
@@ -64,8 +58,7 @@ def exported_world(world: World, agents: Iterable[AgentSpec] = ()) -> ExportedSc
         pieces.setdefault(owner, []).append(piece)
     for own in pieces.values():
         own.sort(key=lambda piece: piece.instance.is_part)
-    table = AgentTable()
-    table.add_missing(agents, world)
+    table = agents or AgentTable()
     return ExportedScene(
         name=contents.scene,
         bodies=tuple(_body(body, pieces[id_]) for id_, body in world.numbered_bodies),
@@ -81,6 +74,19 @@ def exported_world(world: World, agents: Iterable[AgentSpec] = ()) -> ExportedSc
         ),
         gravity=world.gravity,
     )
+
+
+def agents_in(world: World, specs: Iterable[AgentSpec]) -> AgentTable:
+    """Return agents as a scene file describes them.
+
+    Raises
+    ------
+    UnknownName
+        If one follows a mover that is not there.
+    """
+    table = AgentTable()
+    table.add_missing(specs, world)
+    return table
 
 
 def exported_asset(asset: Asset, categories: CategoryTable) -> ExportedScene:

@@ -8,10 +8,10 @@ from __future__ import annotations
 import atexit
 import contextlib
 import inspect
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from sailenv_ros.errors import InvalidRequest, SailenvError, SimulationClosed
 from sailenv_ros.frame.html import scene_html
@@ -40,6 +40,8 @@ from sailenv_ros.types.snapshot import SceneContents
 from sailenv_ros.types.views import FIVE_VIEWS, checked_views
 
 __all__ = ["Simulation"]
+
+T = TypeVar("T")
 
 
 class Simulation(ListenedSimulation):
@@ -268,6 +270,16 @@ class Simulation(ListenedSimulation):
 
         future = self._loop.submit(lambda core: core.open_stream(agent, wanted, self._changed))
         return wait_for(future, f"a stream of agent {agent!r}", timeout_s)
+
+    def read(self, call: Callable[[SimulationCore], T], *, timeout_s: float = 60.0) -> T:
+        """Call a function with what is simulated, between two steps; it must change nothing.
+
+        Raises
+        ------
+        SimulationClosed, DeadlineExceeded
+            If the simulation has ended, or gave no result in time.
+        """
+        return wait_for(self._loop.submit(call), "what a function reads", timeout_s)
 
     def refresh(self) -> Future[None]:
         """Begin to take up furniture and baked light that were built since the start."""

@@ -27,6 +27,7 @@ from sailenv_ros.viewer.client import Client
 from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
 from sailenv_ros.viewer.edit_history import EditHistory
 from sailenv_ros.viewer.encoding import views_to_json
+from sailenv_ros.viewer.export_files import ExportFiles
 from sailenv_ros.viewer.messages import StatsMessage
 from sailenv_ros.viewer.page_files import page_file
 from sailenv_ros.viewer.scene_json import (
@@ -184,6 +185,8 @@ class ViewerServer(LoopServer):
         app.router.add_get("/", self._page)
         app.router.add_get("/socket", self._socket)
         app.router.add_get("/thumbnail/{asset}", self._thumbnail)
+        exports = ExportFiles(self._simulation, self._access, self._limits.request_s)
+        app.router.add_get("/export/{format}", exports.answer)
         app.router.add_get("/{name}", self._page_file)
         runner = web.AppRunner(
             app,

@@ -10,6 +10,12 @@ const SIZES = [
   { width: 320, height: 240 }, { width: 640, height: 480 }, { width: 800, height: 450 }, { width: 1280, height: 720 },
 ];
 
+/** Formats by their names, and programs that open them. */
+const FORMATS = [
+  ["glb", "Blender, glTF"], ["usdz", "OpenUSD in one file"], ["usda", "OpenUSD as text"],
+  ["xml", "MuJoCo"], ["sdf", "Gazebo"],
+];
+
 export class ScenePanel {
   title = "Scene";
 
@@ -19,6 +25,8 @@ export class ScenePanel {
   #sceneTitle;
   #overwrite;
   #saved;
+  #format;
+  #exported;
   #seed;
   #factor;
   #size;
@@ -43,6 +51,9 @@ export class ScenePanel {
     this.#sceneTitle = el("input", { type: "text", id: "save-title", placeholder: "as it was" });
     this.#overwrite = el("input", { type: "checkbox", id: "save-overwrite" });
     this.#saved = el("p", { class: "advice", id: "saved" });
+    this.#format = el("select", { id: "export-format" },
+      ...FORMATS.map(([name, programs]) => el("option", { value: name }, `${name}: ${programs}`)));
+    this.#exported = el("p", { class: "advice", id: "exported" });
     this.#seed = el("input", { type: "number", min: 0, step: 1, id: "seed" });
     this.#factor = el("input", {
       type: "number", min: 0.1, max: 10, step: 0.1, id: "factor",
@@ -88,6 +99,13 @@ export class ScenePanel {
           button("Save", () => this.#save(), { glyph: "save", kind: "primary save" }),
           button("Download", () => this.#download(), { kind: "download" })),
         this.#saved,
+      ),
+      section(
+        "Export for other programs",
+        line("format", this.#format),
+        el("div", { class: "buttons" },
+          button("Download", () => this.#export(), { kind: "export", title: "The scene as it is now" })),
+        this.#exported,
       ),
       section(
         "Time and chance",
@@ -189,6 +207,22 @@ export class ScenePanel {
     if (path === undefined) return;
     this.#saved.textContent = `Saved: ${path}`;
     toast("Saved. It is in the list of scenes now.");
+  }
+
+  async #export() {
+    const format = this.#format.value;
+    say(this.#exported, "being written …");
+    try {
+      const answer = await fetch(`export/${format}${location.search}`);
+      if (!answer.ok) throw new Error(await answer.text());
+      const told = answer.headers.get("Content-Disposition") ?? "";
+      const name = /filename="([^"]+)"/.exec(told)?.[1] ?? `scene.${format}`;
+      const data = await answer.blob();
+      download(name, data);
+      say(this.#exported, `${name}, ${(data.size / 1e6).toFixed(1)} MB`);
+    } catch (problem) {
+      say(this.#exported, String(problem instanceof Error ? problem.message : problem));
+    }
   }
 
   async #download() {

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sailenv_ros.scene_export.contents import ExportedScene
-from sailenv_ros.scene_export.gathering import exported_world
+from sailenv_ros.scene_export.gathering import agents_in, exported_world
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.world import World
 
@@ -68,4 +68,4 @@ def world(scene_file: Path) -> Iterator[World]:
 @pytest.fixture(scope="session")
 def scene(scene_file: Path, world: World) -> ExportedScene:
     agents = SceneLibrary(baked_light=False).load(scene_file).agents
-    return exported_world(world, [agent.to_agent_spec() for agent in agents])
+    return exported_world(world, agents_in(world, [one.to_agent_spec() for one in agents]))

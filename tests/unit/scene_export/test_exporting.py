@@ -5,15 +5,17 @@ from __future__ import annotations
 import errno
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from sailenv_ros import export_asset, export_scene
+from sailenv_ros import Simulation, export_asset, export_scene
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidRequest, StorageError, UnknownName
 from sailenv_ros.scene_export import saving
 from sailenv_ros.scene_export.contents import Written
 from sailenv_ros.scene_export.formats import ASSET_FORMATS, SCENE_FORMATS
 from sailenv_ros.scene_export.saving import save
+from tests.unit.scene_export.test_glb import Glb
 
 
 @pytest.mark.parametrize("name", ["room.obj", "room", "room.glb.zip"])
@@ -107,3 +109,19 @@ def test_every_format_is_told_of(tmp_path: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert all(f"`{suffix}`" in text for suffix in {*SCENE_FORMATS, *ASSET_FORMATS})
     assert saving.__all__
+
+
+def test_a_running_simulation_is_written_as_it_is_now(scene_file: Path, tmp_path: Path) -> None:
+    """With what was moved, added and taken out, and with the cameras that look at it."""
+    with Simulation(scene_file, mode="lockstep") as simulation:
+        simulation.despawn_object("can")
+        simulation.spawn_object("cube", (0.5, -0.25, 0.75), object_name="newcomer", scale=0.2)
+        simulation.set_position((2.0, 1.0, 1.75), agent="eye", teleport=True)
+        report = export_scene(simulation, tmp_path / "now.glb")
+        with pytest.raises(InvalidRequest, match="as it is now"):
+            export_scene(simulation, tmp_path / "later.glb", at_s=1.0)
+    seen = Glb(report.file.read_bytes())
+    assert "can" not in seen.nodes
+    np.testing.assert_allclose(seen.pose("newcomer")[:3, 3], (0.5, -0.25, 0.75))
+    np.testing.assert_allclose(seen.pose("eye")[:3, 3], (2.0, 1.0, 1.75))
+    assert not (tmp_path / "later.glb").exists()
