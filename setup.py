@@ -123,6 +123,9 @@ DEV = [
     "types-jsonschema",
     "types-PyYAML",
 ]
+PROGRAMS = ("sim_node", "recorder", "player", "streamer")
+"""Nodes that `ros2 run` starts."""
+
 CONFIG = ["yaml", "xml", "json", "rviz"]
 
 
@@ -145,8 +148,7 @@ def data_files() -> list[tuple[str, list[str]]]:
     ]
     # pip ignores setup.cfg's install_scripts, colcon does not.
     if "bdist_wheel" in sys.argv:
-        programs = ["resource/sim_node", "resource/recorder", "resource/player"]
-        files.append((f"lib/{PACKAGE}", programs))
+        files.append((f"lib/{PACKAGE}", [f"resource/{program}" for program in PROGRAMS]))
     return files
 
 
@@ -235,9 +237,7 @@ setup(
     entry_points={
         "console_scripts": [
             "sailenv = sailenv_ros.cli.main:main",
-            "sim_node = sailenv_ros.ros.nodes.sim_node:main",
-            "recorder = sailenv_ros.ros.nodes.recorder:main",
-            "player = sailenv_ros.ros.nodes.player:main",
+            *(f"{program} = sailenv_ros.ros.nodes.{program}:main" for program in PROGRAMS),
         ]
     },
     zip_safe=False,

@@ -68,7 +68,7 @@ DRIFTS: dict[str, dict[str, Any]] = {
     "vignetting": _sensor("vignetting", 0.0, 1.0),
     "wear": {"wear": {"onset": ONSET - 1, "over": 1, "most": 1}},
     "mount": {"mount": {"onset": ONSET, "every": 1_000_000, "turn": 15, "shift": 0.1, "zoom": 0.3}},
-    "classes": {"classes": [{"category": "bed", "begin": ONSET}]},
+    "classes": {"classes": [{"category": "bathtub", "begin": ONSET}]},
 }
 """One drift each, from `ONSET` on."""
 

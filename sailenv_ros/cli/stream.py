@@ -8,9 +8,10 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from sailenv_ros.cli.arguments import add_light
+from sailenv_ros.cli.node_process import become_node
 from sailenv_ros.errors import InvalidRequest
 
 __all__ = ["add_parser", "run"]
@@ -49,14 +50,27 @@ def add_parser(subparsers: Any) -> None:
     endless = actions.add_parser(
         "endless", help="frames of a stream without an end", description=_DESCRIPTION
     )
-    endless.add_argument(
-        "--course", default="home", metavar="NAME", help="or a file; default: home"
-    )
-    endless.add_argument(
-        "--begin", type=int, default=0, metavar="N", help="first frame; default: 0"
-    )
+    _add_course(endless)
     endless.add_argument("--frames", type=int, required=True, metavar="N", help="how many")
     _add_output(endless)
+    publish = actions.add_parser(
+        "publish",
+        help="a stream without an end as topics",
+        description="Publish frames of an endless stream as ROS topics, as they are drawn.",
+    )
+    _add_course(publish)
+    publish.add_argument("--frames", type=int, default=0, metavar="N", help="default: to the end")
+    publish.add_argument(
+        "--rate", type=float, default=1.0, metavar="X",
+        help="stream seconds per second; 0: as fast as it goes; default: 1",
+    )  # fmt: skip
+    publish.add_argument("--no-clock", action="store_true", help="leave /clock alone")
+    _add_seed_and_views(publish)
+
+
+def _add_course(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--course", default="home", metavar="NAME", help="or a file; default: home")
+    parser.add_argument("--begin", type=int, default=0, metavar="N", help="first frame; default: 0")
 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:
@@ -69,13 +83,19 @@ def _add_output(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, required=True, metavar="DIR", help="the bag; must not exist"
     )
+    _add_seed_and_views(parser)
+    parser.add_argument("--quiet", action="store_true", help="no progress line")
+
+
+def _add_seed_and_views(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, help="default: %(default)s")
     parser.add_argument("--views", nargs="+", default=[], metavar="VIEW", help="default: its own")
-    parser.add_argument("--quiet", action="store_true", help="no progress line")
 
 
 def run(args: argparse.Namespace) -> int:
     """Make the stream; 0 if all is well."""
+    if args.stream == "publish":
+        _become_streamer(args)
     from sailenv_ros.cli.scene_bake import ensure_baked
     from sailenv_ros.dataset.streams import StreamJob, make_stream, stream_named
 
@@ -140,3 +160,13 @@ def _progress(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
     finally:
         if shown:
             print(file=sys.stderr)
+
+
+def _become_streamer(args: argparse.Namespace) -> NoReturn:
+    parameters: dict[str, object] = {
+        "course": args.course, "seed": args.seed, "begin": args.begin, "frames": args.frames,
+        "rate": args.rate, "clock": not args.no_clock,
+    }  # fmt: skip
+    if args.views:
+        parameters["views"] = args.views
+    become_node("streamer", parameters)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame.frame import Frame
@@ -21,6 +22,7 @@ from sailenv_ros.recording.channels import (
     scene_info_message,
     topic,
 )
+from sailenv_ros.recording.topics import RecordedTopic
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.futures import wait_for
@@ -32,6 +34,7 @@ from sailenv_ros.types.views import checked_views
 __all__ = [
     "FRAME_TIMEOUT_S",
     "FrameRecorder",
+    "MessageSink",
     "record_lockstep",
     "rendered",
     "rendered_ahead",
@@ -41,6 +44,16 @@ FRAME_TIMEOUT_S = 120.0
 """Time limit for rendering one frame [s]."""
 
 
+class MessageSink(Protocol):
+    """Takes messages by their topics: a `RecordingWriter`, or publishers."""
+
+    def add_topic(self, topic: RecordedTopic) -> None:
+        """Make a topic known."""
+
+    def write(self, topic: str, parts: Sequence[Any], log_ns: int) -> None:
+        """Take one message in CDR, cut anywhere."""
+
+
 class FrameRecorder:
     """Writes frames and scene infos as the node would publish them; times are simulated.
 
@@ -48,26 +61,37 @@ class FrameRecorder:
 
     Parameters
     ----------
-    writer : RecordingWriter
+    writer : MessageSink
         Stays the caller's.
     namespace : str
         What the topics' names begin with.
     """
 
-    def __init__(self, writer: RecordingWriter, namespace: str = "/sailenv") -> None:
+    def __init__(self, writer: MessageSink, namespace: str = "/sailenv") -> None:
         self._writer = writer
         self._namespace = "/" + namespace.strip("/") if namespace.strip("/") else ""
         self._epoch: int | None = None
         self._base_ns = 0
         self._last_ns = 0
         self._known: set[str] = set()
+        self._told: SceneInfo | None = None
+
+    def announce(self, frame: Frame) -> None:
+        """Make the topics of frames like this one known."""
+        for entry in agent_topics(self._namespace, frame.agent, tuple(frame.views)):
+            self._add(entry)
+
+    def write_told(self, frame: Frame) -> None:
+        """Record a frame, after what is known of its scene if that is new."""
+        if frame.info is not None and frame.info is not self._told:
+            self.write_info(frame.info)
+            self._told = frame.info
+        self.write_frame(frame, frame.depth_range_m)
 
     def write_info(self, info: SceneInfo) -> None:
         """Record what clients are told of the scene."""
         name = f"{self._namespace}/scene_info"
-        if not self._known:
-            self._writer.add_topic(topic(name, SCENE_INFO))
-        self._known.add(name)
+        self._add(topic(name, SCENE_INFO))
         log_ns = self._log_ns(info.epoch, info.sim_time_ns)
         self._writer.write(name, scene_info_message(info), log_ns)
 
@@ -75,12 +99,15 @@ class FrameRecorder:
         """Record a frame; its views are those that it has. With `amodal` its amodal masks too."""
         kept = (*frame.views, *(ON_REQUEST if amodal else ()))
         for entry in agent_topics(self._namespace, frame.agent, kept):
-            if entry.name not in self._known:
-                self._known.add(entry.name)
-                self._writer.add_topic(entry)
+            self._add(entry)
         log_ns = self._log_ns(frame.epoch, frame.stamp_ns)
         for name, parts in frame_messages(frame, depth_range_m, amodal=amodal):
             self._writer.write(f"{self._namespace}/{frame.agent}/{name}", parts, log_ns)
+
+    def _add(self, entry: RecordedTopic) -> None:
+        if entry.name not in self._known:
+            self._known.add(entry.name)
+            self._writer.add_topic(entry)
 
     def _log_ns(self, epoch: int, stamp_ns: int) -> int:
         if epoch != self._epoch:

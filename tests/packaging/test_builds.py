@@ -84,7 +84,7 @@ def test_the_wheel_holds_all_that_is_needed(tmp_path: Path) -> None:
             assert f"{data}/share/sailenv_ros/{source.relative_to(ROOT)}" in held
     assert f"{data}/share/ament_index/resource_index/packages/sailenv_ros" in held
     assert f"{data}/share/sailenv_ros/package.xml" in held
-    for program in ("sim_node", "recorder", "player"):
+    for program in ("sim_node", "recorder", "player", "streamer"):
         assert held[f"{data}/lib/sailenv_ros/{program}"].external_attr >> 16 & 0o111 == 0o111
     assert not any(name.startswith("tests/") for name in held)
     # One wheel for all Pythons of this machine, with the compiled kernels in it.

@@ -15,12 +15,10 @@ from typing import Any
 import sailenv_ros.streams as streams
 from sailenv_ros.dataset.streams.making import PART_FRAMES, record_parts
 from sailenv_ros.dataset.streams.parts import StreamFolder
-from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.lockstep import FrameRecorder
 from sailenv_ros.simulation.generated_scenes import generation_state
 from sailenv_ros.streams import Course
 from sailenv_ros.streams.course import MOST_FRAMES
-from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.validation import checked_integer
 from sailenv_ros.types.views import checked_views
 
@@ -107,15 +105,8 @@ def _make_parts(
     job: EndlessJob, folder: StreamFolder, begin: int, on_frame: Callable[[int], None]
 ) -> None:
     with streams.open(job.course, seed=job.seed, views=job.views) as stream:
-        known: SceneInfo | None = None
 
         def record(recorder: FrameRecorder, number: int, begins: bool) -> None:
-            nonlocal known
-            frame: Frame = stream[job.begin + number].frame
-            if begins or frame.info is not known:
-                assert frame.info is not None
-                recorder.write_info(frame.info)
-                known = frame.info
-            recorder.write_frame(frame, frame.depth_range_m)
+            recorder.write_told(stream[job.begin + number].frame)
 
         record_parts(folder, range(begin, job.frames), PART_FRAMES, record, on_frame)

@@ -33,7 +33,7 @@ from sailenv_ros.ros.nodes.qos import clock_qos, no_events, recorded_qos
 from sailenv_ros.ros.nodes.running import run_node
 from sailenv_ros.types.validation import Bounds
 
-__all__ = ["PARAMETERS", "Player", "main"]
+__all__ = ["ACKNOWLEDGE_S", "PARAMETERS", "Player", "main", "recorded_publisher"]
 
 NODE_NAME = "player"
 LOOK_INTERVAL_S = 0.05
@@ -90,7 +90,9 @@ class Player:
         self._programme = chosen
         self._changed = threading.Condition()
         self._publishers = {
-            t.name: _publisher(node, t) for t in topics if t.name != _CLOCK_NAME or publish_clock
+            t.name: recorded_publisher(node, t)
+            for t in topics
+            if t.name != _CLOCK_NAME or publish_clock
         }
         # Where no clock was recorded, the stamps of what is played tell the time.
         self._own_clock: Publisher | None = None
@@ -230,7 +232,8 @@ def _playable(node: Node, reader: RecordingReader, names: Sequence[str]) -> list
     return playable
 
 
-def _publisher(node: Node, topic: RecordedTopic) -> Publisher:
+def recorded_publisher(node: Node, topic: RecordedTopic) -> Publisher:
+    """Make the publisher of a recorded topic, with the quality that it was offered with."""
     latched = topic.qos.durability == "transient_local"
     # A little more than was offered: what was recorded late may follow closely.
     depth = topic.qos.depth if latched else max(topic.qos.depth, 10)

@@ -12,6 +12,7 @@ from sailenv_ros.recording.channels import AGENT_TOPICS
 from sailenv_ros.ros.nodes.parameter_table import Parameter
 from sailenv_ros.ros.nodes.player import PARAMETERS as PLAYER
 from sailenv_ros.ros.nodes.recorder import PARAMETERS as RECORDER
+from sailenv_ros.ros.nodes.streamer import PARAMETERS as STREAMER
 from sailenv_ros.system.resources import resource_path
 
 pytestmark = pytest.mark.ros
@@ -47,7 +48,10 @@ def test_the_rviz_configuration_fits_our_topics() -> None:
     assert manager["Global Options"]["Fixed Frame"] == "world"
 
 
-@pytest.mark.parametrize(("file", "table"), [("recorder.yaml", RECORDER), ("player.yaml", PLAYER)])
+@pytest.mark.parametrize(
+    ("file", "table"),
+    [("recorder.yaml", RECORDER), ("player.yaml", PLAYER), ("streamer.yaml", STREAMER)],
+)
 def test_the_parameter_files_have_every_default(file: str, table: dict[str, Parameter]) -> None:
     """The shipped files name every parameter of their node, with the value that it has."""
     shipped = yaml.safe_load((resource_path("config") / file).read_text())

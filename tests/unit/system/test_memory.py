@@ -39,7 +39,7 @@ def test_kept_memory_is_not_faulted_in_again() -> None:
     assert faults("as it is") > 10_000
 
 
-@pytest.mark.parametrize("node", ["sim_node", "recorder", "player"])
+@pytest.mark.parametrize("node", ["sim_node", "recorder", "player", "streamer"])
 def test_a_node_with_too_few_addresses_says_so(node: str) -> None:
     """Its libraries ended in "Segmentation fault" as they were loaded."""
     few = 700 * 2**20
