@@ -123,9 +123,6 @@ DEV = [
     "types-jsonschema",
     "types-PyYAML",
 ]
-PROGRAMS = ("sim_node", "recorder", "player", "streamer")
-"""Nodes that `ros2 run` starts."""
-
 CONFIG = ["yaml", "xml", "json", "rviz"]
 
 
@@ -148,7 +145,8 @@ def data_files() -> list[tuple[str, list[str]]]:
     ]
     # pip ignores setup.cfg's install_scripts, colcon does not.
     if "bdist_wheel" in sys.argv:
-        files.append((f"lib/{PACKAGE}", [f"resource/{program}" for program in PROGRAMS]))
+        programs = [f"resource/{name}" for name in ("sim_node", "recorder", "player", "streamer")]
+        files.append((f"lib/{PACKAGE}", programs))
     return files
 
 
@@ -237,7 +235,10 @@ setup(
     entry_points={
         "console_scripts": [
             "sailenv = sailenv_ros.cli.main:main",
-            *(f"{program} = sailenv_ros.ros.nodes.{program}:main" for program in PROGRAMS),
+            "sim_node = sailenv_ros.ros.nodes.sim_node:main",
+            "recorder = sailenv_ros.ros.nodes.recorder:main",
+            "player = sailenv_ros.ros.nodes.player:main",
+            "streamer = sailenv_ros.ros.nodes.streamer:main",
         ]
     },
     zip_safe=False,
