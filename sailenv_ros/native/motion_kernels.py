@@ -24,7 +24,14 @@ from sailenv_ros.native.lens_models import MOST_COEFFICIENTS
 from sailenv_ros.native.library import checked
 from sailenv_ros.native.records import Fields, RecordKernel
 
-__all__ = ["MOTION_OUTPUTS", "BentLenses", "RowMotions", "move_points", "transform_points"]
+__all__ = [
+    "MOTION_OUTPUTS",
+    "BentLenses",
+    "RowMotions",
+    "SurfaceMotions",
+    "move_points",
+    "transform_points",
+]
 
 _PIXELS: tuple[Fields, ...] = (
     ("integer", "height width"),
@@ -45,6 +52,7 @@ _MOVE = RecordKernel(
     ("number", "tolerance duration"),
     ("array", "own_from_rows rows_from_own at_rest"),
     ("integer", "row_poses"),
+    ("array", "offsets deforming turns displacement_turns"),
     ("array", "flow scene_flow valid occluded out_of_view hidden"),
 )
 _TRANSFORM = RecordKernel(
@@ -101,6 +109,27 @@ class RowMotions(NamedTuple):
     at_rest: NDArray[np.bool_]
 
 
+class SurfaceMotions(NamedTuple):
+    """How points of surfaces that deform have moved, besides the motion of their instances.
+
+    Attributes
+    ----------
+    offsets : (H, W, 3) float32
+        In the axes of the instance [m]; nan where it is not known. Read where a row deforms.
+    deforming : (R,) bool
+        Rows of the motions whose points have offsets.
+    turns : (R, 3, 3) float64
+        From the instance's axes at the other instant to those of the other camera.
+    displacement_turns : (R, 3, 3) float64 or None
+        From the same axes to those of the first camera.
+    """
+
+    offsets: NDArray[np.float32]
+    deforming: NDArray[np.bool_]
+    turns: NDArray[np.float64]
+    displacement_turns: NDArray[np.float64] | None = None
+
+
 MOTION_OUTPUTS: Mapping[str, tuple[Any, tuple[int, ...]]] = {
     "flow": (np.float32, (2,)),
     "scene_flow": (np.float32, (3,)),
@@ -127,6 +156,7 @@ def move_points(
     *,
     bent: BentLenses | None = None,
     by_rows: RowMotions | None = None,
+    surfaces: SurfaceMotions | None = None,
     duration_s: float = 1.0,
     threads: int,
 ) -> None:
@@ -171,6 +201,8 @@ def move_points(
     by_rows : RowMotions or None
         Where a shutter rolls; counts instead of `motions`, with its groups as rows. Excludes
         ``scene_flow``.
+    surfaces : SurfaceMotions or None
+        Of what deforms, if something does.
     duration_s : float
         From the one picture to the other [s], negative if that is the earlier one; 1 gives flow
         in pixels.
@@ -207,6 +239,13 @@ def move_points(
         checked("own_from_rows", by_rows.own_from_rows, np.float64, (groups, len(depth), 3, 4))
         checked("rows_from_own", by_rows.rows_from_own, np.float64, (groups, None, 3, 4))
         checked("at_rest", by_rows.at_rest, np.bool_, (groups,))
+    if surfaces is not None:
+        count = len(motions)
+        checked("offsets", surfaces.offsets, np.float32, (*depth.shape, 3))
+        checked("deforming", surfaces.deforming, np.bool_, (count,))
+        checked("turns", surfaces.turns, np.float64, (count, 3, 3))
+        if surfaces.displacement_turns is not None:
+            checked("turns", surfaces.displacement_turns, np.float64, (count, 3, 3))
     _MOVE(
         threads,
         **pixels,
@@ -231,6 +270,10 @@ def move_points(
         rows_from_own=None if by_rows is None else by_rows.rows_from_own,
         at_rest=None if by_rows is None else by_rows.at_rest,
         row_poses=0 if by_rows is None else by_rows.rows_from_own.shape[1],
+        offsets=None if surfaces is None else surfaces.offsets,
+        deforming=None if surfaces is None else surfaces.deforming,
+        turns=None if surfaces is None else surfaces.turns,
+        displacement_turns=None if surfaces is None else surfaces.displacement_turns,
         **{name: outputs.get(name) for name in MOTION_OUTPUTS},
     )
 

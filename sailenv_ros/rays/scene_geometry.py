@@ -7,11 +7,9 @@ own frame, and shared by all instances and all geometries that have it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,17 +19,15 @@ from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.ray_kernels import BoxTree, RayHits, build_tree, cast_rays
 from sailenv_ros.native.ray_types import RAY_SHAPE
 from sailenv_ros.rays.cutouts import surface_at
-from sailenv_ros.rays.model_triangles import triangles_of
-from sailenv_ros.rays.triangle_tree import TriangleTree, triangle_tree
+from sailenv_ros.rays.opaque_models import OpaqueModel, deformed_model, opaque_model
 from sailenv_ros.space import RayCast
 from sailenv_ros.types.instance_states import InstanceStates
-from sailenv_ros.types.model import Material, Model
+from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import SceneContents
 
 __all__ = ["SceneGeometry", "SurfaceHits"]
 
 Doubles = NDArray[np.float64]
-_Placed = tuple[BoxTree, Doubles, NDArray[np.int32]]
 
 MOST_HOLES = 64
 """Surfaces with holes that one ray may pass."""
@@ -52,26 +48,45 @@ class SurfaceHits(NamedTuple):
     instance: NDArray[np.int64]
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _OpaqueModel:
-    """One model's triangles but those of glass, as rays meet them.
+class _ModelSet:
+    """Models, whose triangles are counted on from one to the next."""
 
-    `material` is the place in `materials` of each triangle's.
-    """
+    def __init__(self, models: list[OpaqueModel]) -> None:
+        self.models = models
 
-    corners: Doubles
-    uvs: NDArray[np.float32]
-    material: NDArray[np.int32]
-    materials: tuple[Material, ...]
-    tree: TriangleTree
+    @cached_property
+    def firsts(self) -> NDArray[np.int64]:
+        """(S + 1,) where each model's triangles begin, and where the last one's end."""
+        return np.array([0, *accumulate(len(model.corners) for model in self.models)], np.int64)
 
-    @property
-    def masked(self) -> list[int]:
-        """Places in `materials` of what has holes."""
-        return [place for place, look in enumerate(self.materials) if look.alpha == "mask"]
+    @cached_property
+    def shapes(self) -> NDArray[np.void]:
+        """(S,) RAY_SHAPE."""
+        shapes = np.concatenate(
+            [np.zeros(0, RAY_SHAPE), *(model.tree.record for model in self.models)]
+        )
+        shapes["first_triangle"] = self.firsts[:-1]
+        return shapes
+
+    @cached_property
+    def bounds(self) -> Doubles:
+        """(S, 2, 3): corners of boxes around the models."""
+        bounds = [(model.tree.low, model.tree.high) for model in self.models]
+        return np.array(bounds, np.float64).reshape(-1, 2, 3)
+
+    @cached_property
+    def corners(self) -> Doubles:
+        """(T, 3, 3): of all triangles."""
+        return np.concatenate([np.zeros((0, 3, 3)), *(model.corners for model in self.models)])
 
 
-_kept: WeakKeyDictionary[Model, _OpaqueModel] = WeakKeyDictionary()
+class _Placed(NamedTuple):
+    """Instances at one instant: a tree over them, model_from_world, numbers of their models."""
+
+    tree: BoxTree
+    model_from_world: Doubles
+    numbers: NDArray[np.int32]
+    models: _ModelSet
 
 
 class SceneGeometry:
@@ -137,9 +152,9 @@ class SceneGeometry:
         met = hits.instance >= 0
         normals = np.zeros((len(hits.distance), 3))
         # An instance's own axes to the world's: normals take the transpose of the way back.
-        corners = self._corners[hits.triangle[met]]
+        corners = placed.models.corners[hits.triangle[met]]
         own = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        turned = np.einsum("nji,nj->ni", placed[1][hits.instance[met], :, :3], own)
+        turned = np.einsum("nji,nj->ni", placed.model_from_world[hits.instance[met], :, :3], own)
         normals[met] = turned / np.linalg.norm(turned, axis=1, keepdims=True)
         away = np.einsum("ni,ni->n", normals, directions) > 0.0
         normals[away] *= -1.0
@@ -162,13 +177,14 @@ class SceneGeometry:
             for array in (origins, directions)
         )
         nearest = np.zeros(len(origins))
-        hits = cast_rays(self._shapes, placed, origins, directions, nearest, threads=threads)
+        given = placed.models.shapes, placed[:3]
+        hits = cast_rays(*given, origins, directions, nearest, threads=threads)
         for _ in range(MOST_HOLES):
-            open_ = np.flatnonzero(self._in_hole(hits))
+            open_ = np.flatnonzero(_in_hole(placed.models, hits))
             if not len(open_):
                 break
             again = cast_rays(
-                *(self._shapes, placed, origins[open_], directions[open_]),
+                *(*given, origins[open_], directions[open_]),
                 hits.distance[open_],
                 threads=threads,
             )
@@ -183,77 +199,45 @@ class SceneGeometry:
             accepted = "among those of the geometry: take it from the scene as it is in the frames"
             raise InvalidRequest("instance id", unknown[0], accepted)
         numbers = np.array([self._model_of_id[key] for key in states.ids.tolist()], np.int32)
+        models = self._at_rest
+        if states.deformations:
+            shapes = [deformed_model(shape) for shape in states.deformations.values()]
+            for number, id_ in enumerate(states.deformations, start=len(models.models)):
+                numbers[states.row(id_)] = number
+            models = _ModelSet([*models.models, *shapes])
         result = np.empty((len(states), 3, 4))
         rotations, scales = states.matrices[:, :3, :3], states.scales
         rotation_t = np.swapaxes(rotations, 1, 2)
         result[..., :3] = rotation_t / scales[..., None]
         moved = np.einsum("nij,nj->ni", rotation_t, states.positions)
         result[..., 3] = -moved / scales
-        low, high = self._bounds[numbers, 0], self._bounds[numbers, 1]
+        low, high = models.bounds[numbers, 0], models.bounds[numbers, 1]
         linear = rotations * scales[:, None, :]
         middle = np.einsum("nij,nj->ni", linear, (low + high) / 2.0) + states.positions
         half = np.einsum("nij,nj->ni", np.abs(linear), (high - low) / 2.0) * (1.0 + 1e-6)
         boxes = np.concatenate([middle - half, middle + half], axis=1)
-        return build_tree(np.ascontiguousarray(boxes), 1), result, numbers
+        return _Placed(build_tree(np.ascontiguousarray(boxes), 1), result, numbers, models)
 
     @cached_property
-    def _opaque(self) -> list[_OpaqueModel]:
-        return [_opaque_model(model) for model in self._models]
-
-    @cached_property
-    def _corners(self) -> Doubles:
-        return np.concatenate([np.zeros((0, 3, 3)), *(model.corners for model in self._opaque)])
-
-    @cached_property
-    def _firsts(self) -> NDArray[np.int64]:
-        """(S + 1,) where each model's triangles begin, and where the last one's end."""
-        return np.array([0, *accumulate(len(model.corners) for model in self._opaque)], np.int64)
-
-    @cached_property
-    def _shapes(self) -> NDArray[np.void]:
-        shapes = np.concatenate(
-            [np.zeros(0, RAY_SHAPE), *(model.tree.record for model in self._opaque)]
-        )
-        shapes["first_triangle"] = self._firsts[:-1]
-        return shapes
-
-    @cached_property
-    def _bounds(self) -> Doubles:
-        """(S, 2, 3): corners of boxes around the models."""
-        bounds = [(model.tree.low, model.tree.high) for model in self._opaque]
-        return np.array(bounds, np.float64).reshape(-1, 2, 3)
-
-    def _in_hole(self, hits: RayHits) -> NDArray[np.bool_]:
-        """Return which rays met a masked surface where there is none of it."""
-        found = np.zeros(len(hits.distance), np.bool_)
-        for number, model in enumerate(self._opaque):
-            if not model.masked:
-                continue
-            first, end = self._firsts[number : number + 2]
-            rows = np.flatnonzero((hits.triangle >= first) & (hits.triangle < end))
-            local = hits.triangle[rows] - first
-            for place in model.masked:
-                chosen = model.material[local] == place
-                if chosen.any():
-                    at, of = rows[chosen], local[chosen]
-                    second, third = hits.weights[at].T[:, :, None]
-                    uvs = model.uvs[of].astype(np.float64)
-                    uv = uvs[:, 0] * (1.0 - second - third) + uvs[:, 1] * second
-                    found[at] = ~surface_at(model.materials[place], uv + uvs[:, 2] * third)
-        return found
+    def _at_rest(self) -> _ModelSet:
+        return _ModelSet([opaque_model(model) for model in self._models])
 
 
-def _opaque_model(model: Model) -> _OpaqueModel:
-    """Return what rays need of a model; the same object each time."""
-    if model not in _kept:
-        every = triangles_of(model)
-        chosen = ~every.chosen_by("blend")
-        corners = every.corners[chosen].astype(np.float64)
-        _kept[model] = _OpaqueModel(
-            corners=corners,
-            uvs=every.uvs[chosen],
-            material=every.part[chosen],
-            materials=every.materials,
-            tree=triangle_tree(corners, every.two_sided[chosen]),
-        )
-    return _kept[model]
+def _in_hole(models: _ModelSet, hits: RayHits) -> NDArray[np.bool_]:
+    """Return which rays met a masked surface where there is none of it."""
+    found = np.zeros(len(hits.distance), np.bool_)
+    for number, model in enumerate(models.models):
+        if not model.masked:
+            continue
+        first, end = models.firsts[number : number + 2]
+        rows = np.flatnonzero((hits.triangle >= first) & (hits.triangle < end))
+        local = hits.triangle[rows] - first
+        for place in model.masked:
+            chosen = model.material[local] == place
+            if chosen.any():
+                at, of = rows[chosen], local[chosen]
+                second, third = hits.weights[at].T[:, :, None]
+                uvs = model.uvs[of].astype(np.float64)
+                uv = uvs[:, 0] * (1.0 - second - third) + uvs[:, 1] * second
+                found[at] = ~surface_at(model.materials[place], uv + uvs[:, 2] * third)
+    return found

@@ -22,6 +22,7 @@ class TriangleTree:
     Attributes
     ----------
     record : (1,) RAY_SHAPE
+    nodes : (N,) TREE_NODE
     order : (L, 8) int32
         Which triangles each leaf holds; -1 for none.
     low, high : (3,) float64
@@ -29,6 +30,7 @@ class TriangleTree:
     """
 
     record: NDArray[np.void]
+    nodes: NDArray[np.void]
     order: NDArray[np.int32]
     low: NDArray[np.float64]
     high: NDArray[np.float64]
@@ -81,7 +83,12 @@ def triangle_tree(
         count=count,
     )
     return TriangleTree(
-        record=made, order=order, low=points.min(axis=0), high=points.max(axis=0), kept=kept
+        record=made,
+        nodes=nodes,
+        order=order,
+        low=points.min(axis=0),
+        high=points.max(axis=0),
+        kept=kept,
     )
 
 

@@ -6,7 +6,8 @@ two frames, and everything else about objects in space, is computed from.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.rebuilding import RebuiltByFields
 
 __all__ = ["InstanceStates", "rotation_matrices"]
@@ -44,6 +46,8 @@ class InstanceStates(RebuiltByFields):
         A number that changes when an instance's past is cut off (it was spawned, asked to
         teleport, or got another scale). Between two instants with different numbers it has no
         motion. All 0 unless given.
+    deformations : mapping of int to Deformation
+        Vertices of the instances that deform, by their ids. Messages and files leave them out.
 
     Raises
     ------
@@ -59,6 +63,7 @@ class InstanceStates(RebuiltByFields):
     angular_velocities: NDArray[np.float64]
     scales: NDArray[np.float64] = None  # type: ignore[assignment]  # an array once constructed
     histories: NDArray[np.int64] = None  # type: ignore[assignment]  # the same
+    deformations: Mapping[int, Deformation] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         ids = _frozen("ids", self.ids, np.uint16, (None,))
@@ -91,8 +96,10 @@ class InstanceStates(RebuiltByFields):
         """Return whether all numbers are the same."""
         if not isinstance(other, InstanceStates):
             return NotImplemented
-        names = [entry.name for entry in fields(self)]
-        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
+        names = [entry.name for entry in fields(self) if entry.name != "deformations"]
+        return self.deformations == other.deformations and all(
+            np.array_equal(getattr(self, name), getattr(other, name)) for name in names
+        )
 
     __hash__ = None  # type: ignore[assignment]  # arrays have none
 

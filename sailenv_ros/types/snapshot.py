@@ -7,7 +7,7 @@ pure function of two snapshots and the cameras that go with them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.labels import CategoryTable, Instance
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Model
@@ -46,6 +47,8 @@ class DrawnInstance:
         Of what lies outside a room. It is shown as the sky is: what its materials emit is the
         radiance that they have there, blended with the room as the sky is where that is wanted; it
         takes no light, casts no shadow and gives none.
+    deforms : bool
+        True if snapshots say where its vertices are: its model is what it is at rest.
     """
 
     instance: Instance
@@ -54,6 +57,7 @@ class DrawnInstance:
     lit_by: tuple[str, ...] = ()
     stands: bool | None = None
     outside: Outside | None = None
+    deforms: bool = False
 
     def lamp_power(self, lights: Iterable[Light]) -> tuple[float, float, float]:
         """Return (3,): radiant intensity of the lights whose lamp it is, summed [W/sr]."""
@@ -132,6 +136,8 @@ class WorldSnapshot:
     histories : (N,) int64
         Read-only; a number that changes when an object's past is cut off (it was spawned or
         asked to teleport). Flow exists between two snapshots only for equal numbers.
+    deformations : mapping of int to Deformation
+        Of the instances that deform, by their ids; the same object while a shape is unchanged.
     """
 
     sim_time_ns: int
@@ -139,6 +145,7 @@ class WorldSnapshot:
     contents: SceneContents
     world_from_body: NDArray[np.float64]
     histories: NDArray[np.int64]
+    deformations: Mapping[int, Deformation] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         count = len(self.contents.instances)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.lens_rays import bent_lenses
+from sailenv_ros.frame.motion.deforming_motion import surface_motions
 from sailenv_ros.frame.motion.frame_state import AnyFrame, frame_state_of, require_common_past
 from sailenv_ros.frame.motion.rigid_motion import OCCLUSION_TOLERANCE, motion_table
 from sailenv_ros.native.library import thread_count
@@ -91,7 +92,8 @@ def motion(begin: AnyFrame, end: AnyFrame) -> Motion:
     """
     first, last = frame_state_of(begin, "first frame"), frame_state_of(end, "other frame")
     require_common_past(first, last)
-    table = motion_table(first.observed_poses(), last.observed_poses())
+    begin_poses, end_poses = first.observed_poses(), last.observed_poses()
+    table = motion_table(begin_poses, end_poses)
     depth, instance = first.surfaces("first frame")
     to_depth, to_instance = last.surfaces("other frame")
     names = ("flow", "scene_flow", "valid", "occluded", "out_of_view")
@@ -113,6 +115,9 @@ def motion(begin: AnyFrame, end: AnyFrame) -> Motion:
         OCCLUSION_TOLERANCE,
         found,
         bent=bent_lenses(first.camera.intrinsics, last.camera.intrinsics),
+        surfaces=surface_motions(
+            depth, instance, begin_poses, end_poses, table, threads=thread_count()
+        ),
         threads=thread_count(),
     )
     return Motion(duration_s=(last.stamp_ns - first.stamp_ns) * 1e-9, **found)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.data import FrameData
 from sailenv_ros.frame.lens_rays import depth_shares, ranges_of_depths, tells_depth
-from sailenv_ros.frame.motion.rigid_motion import ObservedPoses
+from sailenv_ros.frame.motion.rigid_motion import DeformedInstance, ObservedPoses
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.instance_states import InstanceStates
 
@@ -56,6 +56,10 @@ class FrameState:
             ids=states.ids,
             world_from_instance=states.matrices,
             histories=states.histories,
+            surfaces={
+                key: DeformedInstance(shape, _scale_of(states, key))
+                for key, shape in states.deformations.items()
+            },
         )
 
     def surfaces(self, what: str) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
@@ -126,6 +130,11 @@ def frame_state_of(frame: AnyFrame, what: str = "frame") -> FrameState:
         accepted = "a frame with the states of its instances, which version 0.2.0 did not record"
         raise InvalidRequest(what, "without states", accepted)
     return FrameState(**fields)
+
+
+def _scale_of(states: InstanceStates, instance_id: int) -> tuple[float, float, float]:
+    x, y, z = states.scales[states.row(instance_id)].tolist()
+    return x, y, z
 
 
 def require_common_past(one: FrameState, other: FrameState) -> None:

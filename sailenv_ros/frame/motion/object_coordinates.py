@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.frame.motion.deforming_motion import object_points
 from sailenv_ros.frame.motion.frame_state import AnyFrame, frame_state_of
-from sailenv_ros.frame.motion.rigid_motion import object_points
 from sailenv_ros.native.library import thread_count
 
 __all__ = ["object_coordinates"]
@@ -18,7 +18,8 @@ def object_coordinates(frame: AnyFrame) -> NDArray[np.float32]:
     Returns
     -------
     points : (H, W, 3) float32
-        Surface point in its instance's own frame [m]; nan where nothing was hit.
+        Surface point in its instance's own frame [m], of what deforms at rest; nan where nothing
+        was hit.
 
     Raises
     ------

@@ -13,8 +13,10 @@ come of these tables and one kernel (`native.motion_kernels.move_points`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,16 +24,19 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.lens_rays import tells_depth, unit_rays
 from sailenv_ros.native.motion_kernels import RowMotions, transform_points
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.row_poses import RowPoses
 
 __all__ = [
     "OCCLUSION_TOLERANCE",
+    "DeformedInstance",
     "MotionTable",
     "ObservedPoses",
     "camera_points",
     "motion_table",
-    "object_points",
+    "motion_of_surfaces",
+    "rigid_points",
     "rows_moved",
 ]
 
@@ -42,6 +47,13 @@ at common fields of view, and thin gaps smaller than this are not distinguished.
 
 _SKY_ROW = 1
 _FIRST_ROW = 2
+
+
+class DeformedInstance(NamedTuple):
+    """Vertices of an instance at an instant, and the scale of its model."""
+
+    shape: Deformation
+    scale: tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -59,6 +71,8 @@ class ObservedPoses:
         Numbers that change when an instance's past is cut off.
     rows : RowPoses or None
         Of a rolling shutter; the rest is of the instant in its middle.
+    surfaces : mapping of int to DeformedInstance
+        Of the instances that deform, by their ids.
     """
 
     camera: Camera
@@ -66,6 +80,24 @@ class ObservedPoses:
     world_from_instance: NDArray[np.float64]
     histories: NDArray[np.int64]
     rows: RowPoses | None = None
+    surfaces: Mapping[int, DeformedInstance] = field(default_factory=dict)
+
+
+def motion_of_surfaces(
+    begin: ObservedPoses, end: ObservedPoses, ids: NDArray[np.uint16]
+) -> tuple[tuple[int, ...], NDArray[np.bool_]]:
+    """Return which of some instances deform between two instants, and (N,) whose motion is known.
+
+    Of what deforms it is known where both vertices are.
+    """
+    deforming, known = [], np.ones(len(ids), np.bool_)
+    for key in begin.surfaces.keys() | end.surfaces.keys():
+        one, other = begin.surfaces.get(key), end.surfaces.get(key)
+        if one is None or other is None:
+            known[ids == key] = False
+        elif one.shape is not other.shape and (ids == key).any():
+            deforming.append(key)
+    return tuple(sorted(deforming)), known
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,11 +112,14 @@ class MotionTable:
         D of the docstring above.
     by_rows : RowMotions or None
         What counts instead where a shutter rolls.
+    deforming_ids : tuple of int
+        Instances whose points move besides; see `deforming_motion`.
     """
 
     row_of_instance: NDArray[np.uint16]
     motions: NDArray[np.float64]
     by_rows: RowMotions | None = None
+    deforming_ids: tuple[int, ...] = ()
     _camera: Camera
     _first: NDArray[np.float64]
     _last: NDArray[np.float64]
@@ -112,6 +147,8 @@ def motion_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     _, rows, others = np.intersect1d(begin.ids, end.ids, assume_unique=True, return_indices=True)
     same = begin.histories[rows] == end.histories[others]
     rows, others = rows[same], others[same]
+    deforming, known = motion_of_surfaces(begin, end, begin.ids[rows])
+    rows, others = rows[known], others[known]
     row_of_instance = np.zeros(65536, np.uint16)
     row_of_instance[0] = _SKY_ROW
     row_of_instance[begin.ids[rows]] = np.arange(len(rows)) + _FIRST_ROW
@@ -135,16 +172,17 @@ def motion_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     return MotionTable(
         row_of_instance=row_of_instance,
         motions=motions,
+        deforming_ids=deforming,
         _camera=begin.camera,
         _first=first,
         _last=last,
     )
 
 
-def object_points(
+def rigid_points(
     depth: NDArray[np.float32], instance: NDArray[np.uint16], poses: ObservedPoses, *, threads: int
 ) -> NDArray[np.float32]:
-    """Return each pixel's surface point in its instance's own frame.
+    """Return each pixel's surface point in its instance's own frame, where it is now.
 
     Parameters
     ----------

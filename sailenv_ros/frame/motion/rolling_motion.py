@@ -12,7 +12,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.motion.rigid_motion import MotionTable, ObservedPoses
+from sailenv_ros.frame.motion.rigid_motion import (
+    MotionTable,
+    ObservedPoses,
+    motion_of_surfaces,
+)
 from sailenv_ros.native.motion_kernels import RowMotions
 from sailenv_ros.types.geometry import invert
 
@@ -32,12 +36,15 @@ def rolling_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     _, rows, others = np.intersect1d(begin.ids, end.ids, assume_unique=True, return_indices=True)
     same = begin.histories[rows] == end.histories[others]
     rows, others = rows[same], others[same]
+    deforming, known = motion_of_surfaces(begin, end, begin.ids[rows])
+    rows, others = rows[known], others[known]
     ids = begin.ids[rows]
     first, last = begin.world_from_instance[rows], end.world_from_instance[others]
     moves = (first != last).any(axis=(1, 2))
     for poses in (begin, end):
         if poses.rows is not None:
             moves |= np.isin(ids, poses.rows.ids)
+    moves |= np.isin(ids, deforming)
     moving = np.flatnonzero(moves)
     group_of_instance = np.zeros(65536, np.uint16)
     group_of_instance[ids] = _STILL
@@ -65,6 +72,7 @@ def rolling_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
         row_of_instance=group_of_instance,
         motions=np.zeros((groups, 3, 4)),
         by_rows=RowMotions(own_from_rows, rows_from_own, at_rest),
+        deforming_ids=deforming,
         _camera=begin.camera,
         _first=first,
         _last=last,

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.lens_rays import reach_lines, reach_of_points
+from sailenv_ros.frame.motion.deforming_points import at_instant, at_rest
 from sailenv_ros.frame.motion.frame_state import (
     AnyFrame,
     FrameState,
@@ -183,7 +184,8 @@ def _found(
         world = eye[met] + directions[met] * hits.distance[met, None]
         matrices = states.matrices[at]
         instances[rows[met]] = hits.instance[met]
-        coords[rows[met]] = np.einsum("nji,nj->ni", matrices[:, :3, :3], world - matrices[:, :3, 3])
+        own = np.einsum("nji,nj->ni", matrices[:, :3, :3], world - matrices[:, :3, 3])
+        coords[rows[met]] = at_rest(own, instances[rows[met]], states)
         histories[rows[met]] = states.histories[at]
     return instances, coords, histories
 
@@ -202,7 +204,7 @@ def _follow(
     there[there] = states.histories[rows[there]] == histories[there]
     chosen = np.flatnonzero(there)
     matrices = states.matrices[rows[chosen]]
-    coords = tracks.coords[chosen]
+    coords = at_instant(tracks.coords[chosen], tracks.instances[chosen], states)
     world = np.einsum("nij,nj->ni", matrices[:, :3, :3], coords) + matrices[:, :3, 3]
     eye = camera.world_from_camera[:3, 3]
     optical = (world - eye) @ camera.world_from_camera[:3, :3]

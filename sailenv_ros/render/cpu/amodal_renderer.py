@@ -50,6 +50,7 @@ class AmodalRenderer:
             If there is no object of that id.
         """
         self._table.show(snapshot.contents)
+        self._table.deform(snapshot)
         parts = self._table.opaque
         poses = np.ascontiguousarray(snapshot.world_from_body)
         ids = snapshot.contents.instance_ids

@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.deformation_kernels import move_clusters
 from sailenv_ros.native.render_types import CLUSTER
 from sailenv_ros.render.scene.clusters import clusters_of
-from sailenv_ros.render.scene.drawn_meshes import DrawnMesh, corners_of
+from sailenv_ros.render.scene.drawn_meshes import DrawnMesh, corner_sources, corners_of
+from sailenv_ros.types.deformation import MovedMesh
 
 __all__ = ["MeshArrays", "MeshStore"]
+
+_NO_SOURCES = np.zeros(0, np.uint32)
 
 _PADDING = 8
 """Corners are read eight at a time."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(eq=False, slots=True)
 class MeshArrays:
-    """One mesh.
+    """One mesh; written again only where its vertices move.
 
     Attributes
     ----------
@@ -36,6 +40,8 @@ class MeshArrays:
     clusters : (C,) CLUSTER
     sphere : (4,) float64
         Centre and radius of a sphere around everything [m].
+    corner_sources : (K,) uint32
+        A vertex of each corner.
     """
 
     drawn: DrawnMesh
@@ -46,13 +52,26 @@ class MeshArrays:
     vertices: NDArray[np.float32]
     clusters: NDArray[np.void]
     sphere: NDArray[np.float64]
+    corner_sources: NDArray[np.uint32]
+    _moved: MovedMesh | None = field(default=None, init=False)
+
+    def move(self, moved: MovedMesh) -> None:
+        """Take the vertices of an instant."""
+        if moved is self._moved:
+            return
+        self._moved = moved
+        corners = moved.positions[self.corner_sources]
+        self.corners[:, : self.corner_count] = corners.T
+        self.vertices[:, :3] = moved.normals
+        move_clusters(corners, self.corner_indices, self.clusters)
+        self.sphere = _sphere_of(corners)
 
 
 class MeshStore:
     """The meshes of the scenes that were shown last."""
 
     def __init__(self) -> None:
-        self._meshes: dict[tuple[int, int], MeshArrays] = {}
+        self._meshes: dict[tuple[int, int, int], MeshArrays] = {}
 
     def get(self, drawn: DrawnMesh) -> MeshArrays:
         """Return a mesh; it is made if it is not there."""
@@ -79,12 +98,6 @@ def _mesh_arrays(drawn: DrawnMesh) -> MeshArrays:
     vertices[:, :3] = made["normal"]
     vertices[:, 3:5] = made["uv"]
     vertices[:, 5:7] = made["light_uv"]
-    sphere = np.zeros(4)
-    if len(corners):
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        sphere[:3] = 0.5 * (low.astype(np.float64) + high)
-        # Kernels read it in single precision.
-        sphere[3] = 1.0001 * np.linalg.norm(corners - sphere[:3], axis=1).max() + 1e-6
     return MeshArrays(
         drawn=drawn,
         corners=columns,
@@ -93,5 +106,16 @@ def _mesh_arrays(drawn: DrawnMesh) -> MeshArrays:
         vertex_indices=np.ascontiguousarray(triangles.reshape(-1), np.uint32),
         vertices=vertices,
         clusters=np.ascontiguousarray(clusters.astype(CLUSTER)),
-        sphere=sphere,
+        sphere=_sphere_of(corners),
+        corner_sources=corner_sources(triangles, numbers) if drawn.owner else _NO_SOURCES,
     )
+
+
+def _sphere_of(corners: NDArray[np.float32]) -> NDArray[np.float64]:
+    sphere = np.zeros(4)
+    if len(corners):
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        sphere[:3] = 0.5 * (low.astype(np.float64) + high)
+        # Kernels read it in single precision.
+        sphere[3] = 1.0001 * np.linalg.norm(corners - sphere[:3], axis=1).max() + 1e-6
+    return sphere

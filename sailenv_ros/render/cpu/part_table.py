@@ -22,11 +22,18 @@ from sailenv_ros.native.render_types import (
     address,
     record,
 )
-from sailenv_ros.render.cpu.mesh_store import MeshStore
+from sailenv_ros.render.cpu.mesh_store import MeshArrays, MeshStore
 from sailenv_ros.render.cpu.texture_store import TextureStore
-from sailenv_ros.render.scene.drawn_meshes import DrawnMesh, chart_table, meshes_of, unwrappings
+from sailenv_ros.render.scene.drawn_meshes import (
+    DrawnMesh,
+    chart_table,
+    meshes_of,
+    owner_of,
+    unwrappings,
+)
 from sailenv_ros.render.scene.material_factors import material_factors
 from sailenv_ros.render.scene.shadow_plan import casts
+from sailenv_ros.types.deformation import MovedMesh
 from sailenv_ros.types.model import Material, Model
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
@@ -41,6 +48,17 @@ class _ModelParts:
     meshes: list[DrawnMesh]
     parts: NDArray[np.void]
     see_through: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _MovingMesh:
+    """A mesh whose vertices move, and where it is in the tables."""
+
+    instance_id: int
+    drawn: DrawnMesh
+    mesh: MeshArrays
+    rest: MovedMesh
+    places: list[tuple[NDArray[np.void], int]]
 
 
 class PartTable:
@@ -67,7 +85,9 @@ class PartTable:
     ) -> None:
         self._meshes = MeshStore() if meshes is None else meshes
         self._textures = TextureStore() if textures is None else textures
-        self._models: dict[tuple[int, int], _ModelParts] = {}
+        self._models: dict[tuple[int, int, int], _ModelParts] = {}
+        self._deforming: list[tuple[int, int, list[DrawnMesh]]] = []
+        self._moving: list[_MovingMesh] | None = []
         self.contents: SceneContents | None = None
         self.opaque = self.glass = self.casters = np.zeros(0, PART)
         self.unlit = self._unlit_glass = self.opaque
@@ -82,6 +102,19 @@ class PartTable:
             return
         self._show(contents)
         self._light_lamps(contents)
+        self._moving = None
+
+    def deform(self, snapshot: WorldSnapshot) -> None:
+        """Put the vertices of what deforms where they are at an instant of the contents shown."""
+        if not self._deforming:
+            return
+        if self._moving is None:
+            self._moving = list(self._find_moving())
+        for moving in self._moving:
+            found = snapshot.deformations.get(moving.instance_id)
+            moving.mesh.move(moving.rest if found is None else found.meshes[moving.drawn.part])
+            for table, place in moving.places:
+                table["sphere"][place] = moving.mesh.sphere
 
     def _light_lamps(self, contents: SceneContents) -> None:
         """Let the lamps that are on glow."""
@@ -110,7 +143,8 @@ class PartTable:
         if before is not None and same_bake and before.instances is contents.instances:
             return
         keys: list[tuple[object, ...]] = [
-            (drawn.instance.id, id(drawn.model), drawn.scale) for drawn in contents.instances
+            (drawn.instance.id, id(drawn.model), drawn.scale, drawn.deforms)
+            for drawn in contents.instances
         ]
         if same_bake and keys == self._keys:
             return
@@ -121,6 +155,7 @@ class PartTable:
         casting_of: dict[tuple[int, tuple[float, ...]], bool] = {}
         shown: list[tuple[_ModelParts, int, bool]] = []
         is_new = False
+        deforming: list[tuple[int, int, list[DrawnMesh]]] = []
         prepared = {id(made.model) for made in self._models.values()}
         self._textures.prepare(
             part.material
@@ -133,11 +168,14 @@ class PartTable:
         ):
             if not drawn.model.parts:
                 continue
-            key = (id(drawn.model), id(flat))
+            owner = owner_of(drawn)
+            key = (id(drawn.model), id(flat), owner)
             made = models.get(key) or self._models.get(key)
             if made is None:
-                made, is_new = self._make(drawn.model, meshes_of(drawn.model, flat)), True
+                made, is_new = self._make(drawn.model, meshes_of(drawn.model, flat, owner)), True
             models[key] = made
+            if owner:
+                deforming.append((row, owner, made.meshes))
             shape = (id(drawn.model), drawn.scale)
             if shape not in casting_of:
                 known = self._casting.get(shape)
@@ -145,7 +183,7 @@ class PartTable:
             shown.append((made, row, casting_of[shape]))
         # Looking for what is not needed takes longer than all else when one object comes or goes.
         trim = is_new or 2 * len(models) < len(self._models)
-        self._models, self._casting = models, casting_of
+        self._models, self._casting, self._deforming = models, casting_of, deforming
         counts = np.array([len(made.parts) for made, _, _ in shown], np.intp)
         rows = np.repeat(np.array([row for _, row, _ in shown], np.intp), counts)
         table, glass = np.zeros(len(rows), PART), np.zeros(len(rows), bool)
@@ -211,6 +249,26 @@ class PartTable:
             clipped=row + 1,
             clip=part,
         )
+
+    def _find_moving(self) -> Iterator[_MovingMesh]:
+        """Yield the meshes that deform, with their places in the tables."""
+        tables: list[NDArray[np.void]] = []
+        for table in (self.opaque, self.unlit, self.glass, self._unlit_glass, self.casters):
+            if not any(table is known for known in tables):
+                tables.append(table)
+        for row, owner, meshes in self._deforming:
+            for drawn in meshes:
+                mesh = self._meshes.get(drawn)
+                at = address(mesh.vertices)
+                places = [
+                    (table, int(place))
+                    for table in tables
+                    for place in np.flatnonzero(
+                        (table["instance"] == row) & (table["vertices_at"] == at)
+                    )
+                ]
+                rest = MovedMesh(drawn.mesh.positions, drawn.mesh.normals)
+                yield _MovingMesh(owner, drawn, mesh, rest, places)
 
     def _make(self, model: Model, meshes: list[DrawnMesh]) -> _ModelParts:
         parts = np.zeros(len(model.parts), PART)

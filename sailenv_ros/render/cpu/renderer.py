@@ -101,6 +101,7 @@ class NativeRenderer(DrawingRenderer):
         began = time.perf_counter()
         snapshot, camera, table = observed.snapshot, observed.camera, self._table
         table.show(snapshot.contents)
+        table.deform(snapshot)
         marked = time.perf_counter()
         timings["upload"] = marked - began
         light = None

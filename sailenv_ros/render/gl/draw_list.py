@@ -17,7 +17,7 @@ from sailenv_ros.render.gl.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.gl.materials import BatchKind, MaterialBuffers
 from sailenv_ros.render.scene.drawn_meshes import chart_table, drawn_meshes
 from sailenv_ros.render.scene.shadow_plan import casts
-from sailenv_ros.types.model import Mesh
+from sailenv_ros.types.deformation import MovedMesh
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
 __all__ = ["ROWS", "Batch", "DrawList"]
@@ -129,7 +129,14 @@ class DrawList:
             np.int64,
         ).reshape(-1, 3)
         self._geometry = geometry
-        self._corners = np.array([_corners(part.mesh) for _, _, part, _ in parts]).reshape(-1, 8, 4)
+        self._corners = np.array(
+            [_corners(part.mesh.positions) for _, _, part, _ in parts]
+        ).reshape(-1, 8, 4)
+        self._deforming = [
+            (number, contents.instances[row].instance.id, mesh)
+            for number, (_, row, _, mesh) in enumerate(parts)
+            if mesh.owner
+        ]
         self._kinds = kinds = [kind for kind, *_ in parts]
         everything = np.arange(len(parts))
         self.batches = tuple(_batches(kinds, everything, apart=see_through))
@@ -159,6 +166,7 @@ class DrawList:
             Which instances are drawn; None for all.
         """
         count = len(self._instance_rows)
+        self._deform(snapshot)
         if count:
             eye_from_body = eye_from_world @ snapshot.world_from_body
             eye_from_object = eye_from_body.copy()
@@ -179,6 +187,18 @@ class DrawList:
                 self._visible &= only[self._instance_rows]
             for batch in self.batches:
                 batch.choose(self._visible, self._distance)
+
+    def _deform(self, snapshot: WorldSnapshot) -> None:
+        """Put the vertices of what deforms where they are."""
+        for number, instance_id, drawn in self._deforming:
+            found = snapshot.deformations.get(instance_id)
+            moved = (
+                MovedMesh(drawn.mesh.positions, drawn.mesh.normals)
+                if found is None
+                else found.meshes[drawn.part]
+            )
+            self._geometry.move(drawn, moved)
+            self._corners[number] = _corners(moved.positions)
 
     def show_lamps(self, lit: bool) -> None:
         """Let the lamps that are on glow, or not."""
@@ -235,9 +255,9 @@ class DrawList:
         self.casters.choose(self._visible & instances[self._instance_rows], self._distance)
 
 
-def _corners(mesh: Mesh) -> NDArray[np.float64]:
-    """Return (8, 4): the homogeneous corners of the box around a mesh."""
-    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+def _corners(positions: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Return (8, 4): the homogeneous corners of the box around points."""
+    low, high = positions.min(axis=0), positions.max(axis=0)
     corners = np.stack(np.meshgrid(*np.stack([low, high], axis=1)), axis=-1).reshape(8, 3)
     return np.concatenate([corners, np.ones((8, 1))], axis=1).astype(np.float64)
 

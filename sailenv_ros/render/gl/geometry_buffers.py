@@ -13,8 +13,16 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.deformation_kernels import move_clusters
+from sailenv_ros.native.render_types import CLUSTER as NATIVE_CLUSTER
 from sailenv_ros.render.scene.clusters import CLUSTER, clusters_of
-from sailenv_ros.render.scene.drawn_meshes import VERTEX, DrawnMesh, corners_of
+from sailenv_ros.render.scene.drawn_meshes import (
+    VERTEX,
+    DrawnMesh,
+    corner_sources,
+    corners_of,
+)
+from sailenv_ros.types.deformation import MovedMesh
 
 __all__ = ["GeometryBuffers", "MeshSlice"]
 
@@ -27,6 +35,23 @@ class MeshSlice:
     index_count: int
     first_cluster: int
     cluster_count: int
+
+
+@dataclass(eq=False, slots=True)
+class _MovingMesh:
+    """A mesh whose vertices move: what the buffers hold of it, and where.
+
+    `clusters` count their indices from its own first one.
+    """
+
+    vertices: NDArray[np.void]
+    first_vertex: int
+    corner_sources: NDArray[np.uint32]
+    corner_indices: NDArray[np.uint32]
+    first_corner: int
+    clusters: NDArray[np.void]
+    first_cluster: int
+    moved: MovedMesh | None = None
 
 
 class GeometryBuffers:
@@ -47,7 +72,8 @@ class GeometryBuffers:
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
-        self._slices: dict[tuple[int, int], MeshSlice] = {}
+        self._slices: dict[tuple[int, int, int], MeshSlice] = {}
+        self._moving: dict[tuple[int, int, int], _MovingMesh] = {}
         self._kept: list[DrawnMesh] = []
         self.vertex_buffer = context.buffer(np.zeros(1, VERTEX).tobytes())
         self.index_buffer = context.buffer(np.zeros(1, np.uint32).tobytes())
@@ -63,7 +89,7 @@ class GeometryBuffers:
         needed = sum(mesh.vertex_count for mesh in wanted)
         if all(mesh.key in self._slices for mesh in wanted) and held <= 2 * needed:
             return
-        self._slices = {}
+        self._slices, self._moving = {}, {}
         # The number of an object is unique only while the object lives: it is kept.
         self._kept = wanted
         first_index = first_vertex = first_corner = first_cluster = 0
@@ -77,6 +103,16 @@ class GeometryBuffers:
             self._slices[mesh.key] = MeshSlice(
                 first_index, triangles.size, first_cluster, len(groups)
             )
+            if mesh.owner:
+                self._moving[mesh.key] = _MovingMesh(
+                    vertices=made.copy(),
+                    first_vertex=first_vertex,
+                    corner_sources=corner_sources(triangles, numbers),
+                    corner_indices=np.ascontiguousarray(numbers.reshape(-1), np.uint32),
+                    first_corner=first_corner,
+                    clusters=groups.astype(NATIVE_CLUSTER),
+                    first_cluster=first_cluster,
+                )
             groups["first_index"] += first_index
             vertices.append(made)
             corners.append(places)
@@ -98,6 +134,24 @@ class GeometryBuffers:
     def slice(self, mesh: DrawnMesh) -> MeshSlice:
         """Return where a mesh that is shown lies."""
         return self._slices[mesh.key]
+
+    def move(self, mesh: DrawnMesh, moved: MovedMesh) -> None:
+        """Put the vertices of a mesh that is shown, and has an owner, to other places."""
+        held = self._moving[mesh.key]
+        if held.moved is moved:
+            return
+        held.moved = moved
+        held.vertices["position"], held.vertices["normal"] = moved.positions, moved.normals
+        corners = moved.positions[held.corner_sources]
+        move_clusters(corners, held.corner_indices, held.clusters)
+        shown = self.clusters[held.first_cluster : held.first_cluster + len(held.clusters)]
+        for name in ("centre", "radius", "axis", "cosine"):
+            shown[name] = held.clusters[name]
+        if len(corners):
+            at = held.first_vertex * VERTEX.itemsize
+            self.vertex_buffer.write(held.vertices.tobytes(), offset=at)
+            at = held.first_corner * 3 * corners.itemsize
+            self.corner_buffer.write(corners.tobytes(), offset=at)
 
     def close(self) -> None:
         """Free the buffers."""

@@ -17,11 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.lens_rays import bent_lenses, depth_shares, reach_view, tells_depth
+from sailenv_ros.frame.motion.deforming_motion import object_points, surface_motions
 from sailenv_ros.frame.motion.rigid_motion import (
     OCCLUSION_TOLERANCE,
+    DeformedInstance,
     ObservedPoses,
     motion_table,
-    object_points,
 )
 from sailenv_ros.frame.motion.rolling_motion import rolling_table
 from sailenv_ros.native.motion_kernels import move_points
@@ -129,12 +130,19 @@ def with_depth(previous: Observation, surface: NDArray[np.float32]) -> Observati
 
 def _poses_of(observed: Observation) -> ObservedPoses:
     snapshot = observed.snapshot
+    shapes = snapshot.deformations
+    scales = (
+        {drawn.instance.id: drawn.scale for drawn in snapshot.contents.instances if drawn.deforms}
+        if shapes
+        else {}
+    )
     return ObservedPoses(
         camera=observed.camera,
         ids=snapshot.contents.instance_ids,
         world_from_instance=snapshot.world_from_body,
         histories=snapshot.histories,
         rows=observed.rows,
+        surfaces={key: DeformedInstance(shape, scales[key]) for key, shape in shapes.items()},
     )
 
 
@@ -162,8 +170,10 @@ def _add_motion(
     table = rolling_table(now, past) if rolls else motion_table(now, past)
     duration_s = (previous.snapshot.sim_time_ns - snapshot.sim_time_ns) * 1e-9
     depth = previous.depth if "hidden" in moved else None
+    reach = arrays[reach_view(lens)]
+    surfaces = surface_motions(reach, arrays["instance"], now, past, table, threads=threads)
     move_points(
-        arrays[reach_view(lens)],
+        reach,
         arrays["instance"],
         table.row_of_instance,
         table.motions,
@@ -176,6 +186,7 @@ def _add_motion(
         moved,
         bent=bent_lenses(lens, previous.camera.intrinsics),
         by_rows=table.by_rows,
+        surfaces=surfaces,
         duration_s=duration_s if duration_s < 0.0 else -1.0,
         threads=threads,
     )

@@ -14,15 +14,17 @@ from numpy.typing import NDArray
 
 from sailenv_ros.types.baked_light import Unwrapping
 from sailenv_ros.types.model import Mesh, Model
-from sailenv_ros.types.snapshot import SceneContents
+from sailenv_ros.types.snapshot import DrawnInstance, SceneContents
 
 __all__ = [
     "VERTEX",
     "DrawnMesh",
     "chart_table",
+    "corner_sources",
     "corners_of",
     "drawn_meshes",
     "meshes_of",
+    "owner_of",
     "unwrappings",
 ]
 
@@ -41,16 +43,19 @@ class DrawnMesh:
     unwrapping : Unwrapping or None
     part : int
         Number of the mesh among its model's parts.
+    owner : int
+        Id of the instance if its vertices move; 0 for a mesh that all instances share.
     """
 
     mesh: Mesh
     unwrapping: Unwrapping | None
     part: int
+    owner: int = 0
 
     @property
-    def key(self) -> tuple[int, int]:
+    def key(self) -> tuple[int, int, int]:
         """Key that is unique to a drawn mesh while both of its objects live."""
-        return id(self.mesh), id(self.unwrapping)
+        return id(self.mesh), id(self.unwrapping), self.owner
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
@@ -83,14 +88,21 @@ class DrawnMesh:
 def drawn_meshes(contents: SceneContents) -> list[list[DrawnMesh]]:
     """Return the meshes of each instance's parts, in their order."""
     return [
-        meshes_of(drawn.model, flat)
+        meshes_of(drawn.model, flat, owner_of(drawn))
         for drawn, flat in zip(contents.instances, unwrappings(contents), strict=True)
     ]
 
 
-def meshes_of(model: Model, unwrapping: Unwrapping | None) -> list[DrawnMesh]:
-    """Return the meshes of a model's parts, in their order."""
-    return [DrawnMesh(part.mesh, unwrapping, place) for place, part in enumerate(model.parts)]
+def meshes_of(model: Model, unwrapping: Unwrapping | None, owner: int = 0) -> list[DrawnMesh]:
+    """Return the meshes of a model's parts, in their order; see `DrawnMesh.owner`."""
+    return [
+        DrawnMesh(part.mesh, unwrapping, place, owner) for place, part in enumerate(model.parts)
+    ]
+
+
+def owner_of(drawn: DrawnInstance) -> int:
+    """Return who owns the meshes of an instance, as `DrawnMesh.owner` says."""
+    return drawn.instance.id if drawn.deforms else 0
 
 
 def unwrappings(contents: SceneContents) -> list[Unwrapping | None]:
@@ -143,6 +155,16 @@ def _fitted(model: Model, baked: Unwrapping) -> Unwrapping:
     if not changed:
         return baked
     return Unwrapping(vertices=tuple(vertices), triangles=tuple(triangles), uvs=tuple(uvs))
+
+
+def corner_sources(vertices: NDArray[np.uint32], corners: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """Return (K,): a vertex of each corner, from the triangles by both as `corners_of` gives them.
+
+    What moves as one at rest has one place: any of a corner's vertices stands for all.
+    """
+    sources = np.zeros(int(corners.max()) + 1 if corners.size else 0, np.uint32)
+    sources[corners.reshape(-1)] = vertices.reshape(-1)
+    return sources
 
 
 def chart_table(contents: SceneContents) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

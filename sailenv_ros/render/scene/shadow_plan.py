@@ -7,12 +7,13 @@ has changed; then what has not moved is copied from a second map, where it was d
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
@@ -97,6 +98,7 @@ class ShadowPlan:
         self._contents: SceneContents | None = None
         self._direction: tuple[float, ...] = ()
         self._poses = np.zeros((0, 4, 4))
+        self._shapes: Mapping[int, Deformation] = {}
         self._casting = self._framed = self._at_rest = np.zeros(0, bool)
         self._rest_poses = np.zeros((0, 4, 4))
         self._rest_drawn = self._shows_rest = False
@@ -135,10 +137,13 @@ class ShadowPlan:
             and np.array_equal(self._framed, framed)
         )
         concerned = casting | framed
-        if same and np.array_equal(self._poses[concerned], poses[concerned]):
+        deforming, reshaped = self._reshaped(snapshot)
+        unchanged = same and not (reshaped & casting).any()
+        if unchanged and np.array_equal(self._poses[concerned], poses[concerned]):
             return None
         moved = (poses != self._poses).any(axis=(1, 2)) if same else np.zeros(len(poses), bool)
-        self._direction, self._poses = light.direction, poses
+        moved |= deforming  # what deforms is never taken to rest
+        self._direction, self._poses, self._shapes = light.direction, poses, snapshot.deformations
         self._casting, self._framed = casting, framed
         self._fit(light, snapshot, poses, framed)
         if self._is_stale(casting):
@@ -150,6 +155,15 @@ class ShadowPlan:
         resting = None if self._rest_drawn or keep else self._at_rest
         self._rest_drawn, self._shows_rest = True, False
         return ShadowRedraw(poses, casting & ~self._at_rest, keep, resting, from_resting=True)
+
+    def _reshaped(self, snapshot: WorldSnapshot) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Return (N,): which instances deform, and which have another shape than was drawn."""
+        shapes, ids = snapshot.deformations, snapshot.contents.instance_ids
+        changed = [key for key, shape in shapes.items() if self._shapes.get(key) is not shape]
+        if not shapes:
+            none = np.zeros(len(ids), bool)
+            return none, none
+        return np.isin(ids, list(shapes)), np.isin(ids, changed)
 
     def _follow(self, contents: SceneContents) -> None:
         """Find the instances of before among the rows of other contents."""

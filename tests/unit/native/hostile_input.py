@@ -63,7 +63,7 @@ from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from tests.support.baked import baked, chart, layer
 from tests.support.hostile_scenes import hostile_scenes
 from tests.support.tiny_scenes import Thing, box_mesh, camera_at, model_of, snapshot_of
-from tests.unit.native import hostile_bake
+from tests.unit.native import hostile_bake, hostile_deformation
 from tests.unit.native.hostile_numbers import NUMBERS, THREADS
 
 __all__ = ["DRIVERS", "THREADS"]
@@ -399,6 +399,7 @@ DRIVERS: tuple[Callable[[], None], ...] = (
     drive_sensor,
     drive_relighting,
     *hostile_bake.DRIVERS,
+    *hostile_deformation.DRIVERS,
     drive_alone,
     drive_instance_measures,
 )

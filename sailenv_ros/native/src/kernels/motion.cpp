@@ -10,41 +10,46 @@
 #include "record.h"
 #include "scratch.h"
 
-#define MOTION_FIELDS(FIELD)                                                              \
-    FIELD(int64_t, height)                                                                \
-    FIELD(int64_t, width)                                                                 \
-    FIELD(const float*, depth)              /* (H, W) [m] */                              \
-    FIELD(const uint16_t*, instance)        /* (H, W) */                                  \
-    FIELD(const uint16_t*, row_of_instance) /* (65536,), 0 where there is no motion */    \
-    FIELD(int64_t, rows)                                                                  \
-    FIELD(const double*, motions)       /* (R, 3, 4) */                                   \
-    FIELD(const double*, displacements) /* (R, 3, 4), or null without scene flow */       \
-    FIELD(const sailenv::Lens*, from_lens)                                                \
-    FIELD(const sailenv::Lens*, to_lens)                                                  \
-    FIELD(int64_t, bent)                  /* 1: a lens is no pin-hole; the next count */  \
-    FIELD(const double*, from_rays)       /* (H, W, 3): unit rays, `depth` is along */    \
-                                          /* them; else null, and it is along the axis */ \
-    FIELD(int64_t, from_parallel)         /* 1: rays are; see `Sight` of lens.h */        \
-    FIELD(int64_t, to_model)              /* of the other lens; below 0: a pin-hole */    \
-    FIELD(const double*, to_coefficients) /* (MOST_COEFFICIENTS,) */                      \
-    FIELD(double, to_limit)               /* [rad] */                                     \
-    FIELD(int64_t, same_lens)                                                             \
-    FIELD(int64_t, to_height)                                                             \
-    FIELD(int64_t, to_width)                                                              \
-    FIELD(const float*, to_depth)       /* (H', W') [m], or null: nothing is seen */      \
-    FIELD(const uint16_t*, to_instance) /* (H', W'), or null: depth alone decides */      \
-    FIELD(double, tolerance)            /* share of its depth a hidden point is behind */ \
-    FIELD(double, duration)             /* what displacements in the picture are over */  \
-    FIELD(const double*, own_from_rows) /* (R, H, 3, 4): other axes from each row's, */   \
-                                        /* instead of `motions`; else null */             \
-    FIELD(const double*, rows_from_own) /* (R, row_poses, 3, 4), of the other picture */  \
-    FIELD(const uint8_t*, at_rest)      /* (R,): 1 where nothing moves */                 \
-    FIELD(int64_t, row_poses)                                                             \
-    FIELD(float*, flow)       /* (H, W, 2); these and the next may be null */             \
-    FIELD(float*, scene_flow) /* (H, W, 3) */                                             \
-    FIELD(uint8_t*, valid)                                                                \
-    FIELD(uint8_t*, occluded)                                                             \
-    FIELD(uint8_t*, out_of_view)                                                          \
+#define MOTION_FIELDS(FIELD)                                                                 \
+    FIELD(int64_t, height)                                                                   \
+    FIELD(int64_t, width)                                                                    \
+    FIELD(const float*, depth)              /* (H, W) [m] */                                 \
+    FIELD(const uint16_t*, instance)        /* (H, W) */                                     \
+    FIELD(const uint16_t*, row_of_instance) /* (65536,), 0 where there is no motion */       \
+    FIELD(int64_t, rows)                                                                     \
+    FIELD(const double*, motions)       /* (R, 3, 4) */                                      \
+    FIELD(const double*, displacements) /* (R, 3, 4), or null without scene flow */          \
+    FIELD(const sailenv::Lens*, from_lens)                                                   \
+    FIELD(const sailenv::Lens*, to_lens)                                                     \
+    FIELD(int64_t, bent)                  /* 1: a lens is no pin-hole; the next count */     \
+    FIELD(const double*, from_rays)       /* (H, W, 3): unit rays, `depth` is along */       \
+                                          /* them; else null, and it is along the axis */    \
+    FIELD(int64_t, from_parallel)         /* 1: rays are; see `Sight` of lens.h */           \
+    FIELD(int64_t, to_model)              /* of the other lens; below 0: a pin-hole */       \
+    FIELD(const double*, to_coefficients) /* (MOST_COEFFICIENTS,) */                         \
+    FIELD(double, to_limit)               /* [rad] */                                        \
+    FIELD(int64_t, same_lens)                                                                \
+    FIELD(int64_t, to_height)                                                                \
+    FIELD(int64_t, to_width)                                                                 \
+    FIELD(const float*, to_depth)       /* (H', W') [m], or null: nothing is seen */         \
+    FIELD(const uint16_t*, to_instance) /* (H', W'), or null: depth alone decides */         \
+    FIELD(double, tolerance)            /* share of its depth a hidden point is behind */    \
+    FIELD(double, duration)             /* what displacements in the picture are over */     \
+    FIELD(const double*, own_from_rows) /* (R, H, 3, 4): other axes from each row's, */      \
+                                        /* instead of `motions`; else null */                \
+    FIELD(const double*, rows_from_own) /* (R, row_poses, 3, 4), of the other picture */     \
+    FIELD(const uint8_t*, at_rest)      /* (R,): 1 where nothing moves */                    \
+    FIELD(int64_t, row_poses)                                                                \
+    FIELD(const float*, offsets)     /* (H, W, 3), own axes: how a point that deforms has */ \
+                                     /* moved besides; nan: unknown. Or null: none does */   \
+    FIELD(const uint8_t*, deforming) /* (R,): 1 where offsets count */                       \
+    FIELD(const double*, turns)      /* (R, 3, 3): to the other camera */                    \
+    FIELD(const double*, displacement_turns) /* (R, 3, 3), or null */                        \
+    FIELD(float*, flow)                      /* (H, W, 2); these and the next may be null */ \
+    FIELD(float*, scene_flow)                /* (H, W, 3) */                                 \
+    FIELD(uint8_t*, valid)                                                                   \
+    FIELD(uint8_t*, occluded)                                                                \
+    FIELD(uint8_t*, out_of_view)                                                             \
     FIELD(uint8_t*, hidden) /* not seen, for whatever reason */
 
 SAILENV_RECORD(Motion, motion, MOTION_FIELDS)
@@ -171,6 +176,64 @@ void move_run(const Motion& in, const double* columns, Wanted wanted, int64_t ro
     }
 }
 
+// A vector times rows of three numbers, and with a fourth one times `shift`.
+void transformed(const double* rows, const double* point, double shift, double* out) {
+    for (int k = 0; k < 3; k++) {
+        const double* r = rows + 4 * k;
+        out[k] = r[0] * point[0] + r[1] * point[1] + r[2] * point[2] + shift * r[3];
+    }
+}
+
+// A vector times a matrix of three rows of three numbers.
+void turned(const double* rows, const float* vector, double* out) {
+    for (int k = 0; k < 3; k++) {
+        const double* r = rows + 3 * k;
+        out[k] = r[0] * vector[0] + r[1] * vector[1] + r[2] * vector[2];
+    }
+}
+
+// The same as `move_run` for points of a surface that deforms, whose first point is pixel `at`.
+void move_deforming_run(const Motion& in, const double* columns, Wanted wanted, int64_t row,
+                        double y, int64_t column, int64_t at, int64_t first, int64_t end,
+                        Places& places) {
+    const double* m = in.motions + 12 * row;
+    const sailenv::Lens &from = *in.from_lens, &to = *in.to_lens;
+    const double rate = 1.0 / in.duration;
+    const double down = sailenv::refocused_v(from, to, y);
+    for (int64_t k = first; k < end; k++) {
+        const float* offset = in.offsets + 3 * (at + k);
+        const double z = places.z[k], x = columns[column + k];
+        const double point[3] = {z * x, z * y, z};
+        const bool known = z - z == 0.0 && offset[0] == offset[0];
+        double step[3], more[3];
+        transformed(m, point, 1.0, step);
+        turned(in.turns + 9 * row, offset, more);
+        for (int axis = 0; axis < 3; axis++) step[axis] += more[axis];
+        const double z_to = z + step[2];
+        const bool valid = known && z_to > 0.0;
+        const double u = (x * step[2] - step[0]) / z_to, v = (y * step[2] - step[1]) / z_to;
+        const double right = sailenv::refocused_u(from, to, x);
+        if (wanted.flow) {
+            const double along = rate * right - to.fx / in.duration * u;
+            const double across = rate * down - to.fy / in.duration * v;
+            places.flow[2 * k] = valid ? static_cast<float>(along) : NOT_A_NUMBER;
+            places.flow[2 * k + 1] = valid ? static_cast<float>(across) : NOT_A_NUMBER;
+        }
+        places.valid[k] = valid;
+        places.known[k] = known;
+        places.u[k] = right - to.fx * u;
+        places.v[k] = down - to.fy * v;
+        places.z_to[k] = z_to;
+        if (!wanted.scene) continue;
+        transformed(in.displacements + 12 * row, point, 1.0, step);
+        turned(in.displacement_turns + 9 * row, offset, more);
+        for (int axis = 0; axis < 3; axis++) {
+            places.scene[axis][k] =
+                known ? static_cast<float>(step[axis] + more[axis]) : NOT_A_NUMBER;
+        }
+    }
+}
+
 // Tells if the other picture shows a point of an instance at (u, v), depth z.
 bool is_seen(const Motion& in, uint16_t id, double u, double v, double z) {
     const double least = z * (1.0 - in.tolerance);
@@ -236,7 +299,12 @@ void move_chunk(const Motion& in, const double* columns, Wanted wanted, int64_t 
         while (end + 8 <= count && memcmp(ids + end, eight, sizeof eight) == 0) end += 8;
         while (end < count && ids[end] == id) end++;
         const uint16_t asked = in.row_of_instance[id];
-        move_run(in, columns, wanted, asked < in.rows ? asked : 0, y, u, first, end, places);
+        const int64_t row = asked < in.rows ? asked : 0;
+        if (in.offsets != nullptr && in.deforming[row] != 0) {
+            move_deforming_run(in, columns, wanted, row, y, u, at, first, end, places);
+        } else {
+            move_run(in, columns, wanted, row, y, u, first, end, places);
+        }
         first = end;
     }
     if (in.flow != nullptr) memcpy(in.flow + 2 * at, places.flow, 2 * sizeof(float) * size);
@@ -249,14 +317,6 @@ void move_chunk(const Motion& in, const double* columns, Wanted wanted, int64_t 
         }
     }
     if (wanted.place) look_up(in, places, v, u, count);
-}
-
-// A vector times rows of three numbers, and with a fourth one times `shift`.
-void transformed(const double* rows, const double* point, double shift, double* out) {
-    for (int k = 0; k < 3; k++) {
-        const double* r = rows + 4 * k;
-        out[k] = r[0] * point[0] + r[1] * point[1] + r[2] * point[2] + shift * r[3];
-    }
 }
 
 // A picture's pixels as points.
@@ -344,9 +404,19 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
         const uint16_t asked = in.row_of_instance[ids[first]];
         const int64_t row = asked < in.rows ? asked : 0;
         move_points(in.motions + 12 * row, first, end, p);
+        const bool deforms = in.offsets != nullptr && in.deforming[row] != 0;
+        for (int64_t k = first; deforms && k < end; k++) {
+            double more[3];
+            turned(in.turns + 9 * row, in.offsets + 3 * (at + k), more);
+            for (int axis = 0; axis < 3; axis++) {
+                p.step[axis][k] += more[axis];
+                p.at[axis][k] += more[axis];
+            }
+        }
         const bool has_motion = row != 0;
         for (int64_t k = first; k < end; k++) {
-            const bool known = has_motion && p.from[2][k] == p.from[2][k];
+            const bool known =
+                has_motion && p.from[2][k] == p.from[2][k] && p.at[2][k] == p.at[2][k];
             const bool rests = in.same_lens != 0 && p.step[0][k] == 0.0 && p.step[1][k] == 0.0 &&
                                p.step[2][k] == 0.0;
             const double moved[3] = {p.at[0][k], p.at[1][k], p.at[2][k]};
@@ -364,6 +434,11 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
                 double point[3], step[3];
                 for (int axis = 0; axis < 3; axis++) point[axis] = p.from[axis][k];
                 transformed(in.displacements + 12 * row, point, 1.0, step);
+                if (deforms) {
+                    double more[3];
+                    turned(in.displacement_turns + 9 * row, in.offsets + 3 * (at + k), more);
+                    for (int axis = 0; axis < 3; axis++) step[axis] += more[axis];
+                }
                 const bool there = places.known[k] && p.shift[k] != 0.0;
                 for (int j = 0; j < 3; j++) {
                     in.scene_flow[3 * (at + k) + j] =
@@ -435,10 +510,13 @@ void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, i
         const double shift = z == INFINITE ? 0.0 : 1.0;
         double seen[3], own[3], point[3], place[2] = {0.0, 0.0};
         point_of(pixels, at + k, u + k, v, z, seen);
-        const bool known = group != 0 && seen[2] == seen[2];
+        const bool deforms = in.offsets != nullptr && in.deforming[group] != 0;
+        const float* offset = deforms ? in.offsets + 3 * (at + k) : nullptr;
+        const bool known = group != 0 && seen[2] == seen[2] && (!deforms || offset[0] == offset[0]);
         for (int axis = 0; axis < 3; axis++) point[axis] = seen[axis];
         const bool rests = in.at_rest[group] != 0;
         transformed(in.own_from_rows + 12 * (group * in.height + v), seen, shift, own);
+        for (int axis = 0; deforms && axis < 3; axis++) own[axis] += offset[axis];
         const bool found =
             known && !rests && find_row(in, group, own, shift, row, project, point, place);
         if (!found) row = static_cast<double>(v);
@@ -531,6 +609,10 @@ SAILENV_KERNEL(motion)(int64_t threads, const Motion* given) {
     Motion in = *given;
     if (in.height < 0 || in.width < 0 || in.rows < 1 || in.to_height < 0 || in.to_width < 0 ||
         (in.scene_flow != nullptr && in.displacements == nullptr)) {
+        return sailenv::STATUS_INVALID_ARGUMENT;
+    }
+    if (in.offsets != nullptr && (in.deforming == nullptr || in.turns == nullptr ||
+                                  (in.scene_flow != nullptr && in.displacement_turns == nullptr))) {
         return sailenv::STATUS_INVALID_ARGUMENT;
     }
     if (in.to_depth == nullptr) in.to_height = in.to_width = 0;

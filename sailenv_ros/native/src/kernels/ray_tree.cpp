@@ -6,6 +6,21 @@
 
 #include "../abi.h"
 #include "rays.h"
+#include "record.h"
+
+#define REFIT_FIELDS(FIELD)                                                               \
+    FIELD(int64_t, nodes_count)                                                           \
+    FIELD(int64_t, leaves)                                                                \
+    FIELD(int64_t, triangles)                                                             \
+    FIELD(int64_t, vertices)                                                              \
+    FIELD(const float*, positions)    /* (V, 3) */                                        \
+    FIELD(const uint32_t*, vertex_of) /* (T, 3): the corners of each triangle */          \
+    FIELD(const int32_t*, order)      /* (L, WIDTH) */                                    \
+    FIELD(sailenv::TreeNode*, nodes)  /* (N,): their children are read, planes written */ \
+    FIELD(double*, corners)           /* (T, 3, 3) */                                     \
+    FIELD(double*, blocks)            /* (L, 9, WIDTH): as RayShape::triangles */
+
+SAILENV_RECORD(Refit, refit_tree, REFIT_FIELDS)
 
 namespace sailenv {
 namespace {
@@ -225,6 +240,73 @@ SAILENV_KERNEL(build_tree)
         builder.write(nodes, order, made);
     } catch (const std::bad_alloc&) {
         return STATUS_OUT_OF_MEMORY;
+    }
+    return STATUS_OK;
+}
+
+// Fits the boxes of a tree around triangles whose corners have moved.
+SAILENV_KERNEL(refit_tree)(int64_t, const Refit* given) {
+    using namespace sailenv;
+    const Refit in = *given;
+    if (in.nodes_count < 1 || in.leaves < 0 || in.triangles < 0) return STATUS_INVALID_ARGUMENT;
+    for (int64_t k = 0; k < 3 * in.triangles; k++) {
+        if (in.vertex_of[k] >= in.vertices) return STATUS_INVALID_ARGUMENT;
+        for (int j = 0; j < 3; j++) {
+            const double x = in.positions[3 * int64_t{in.vertex_of[k]} + j];
+            if (!std::isfinite(x)) return STATUS_INVALID_ARGUMENT;
+            in.corners[3 * k + j] = x;
+        }
+    }
+    for (int64_t k = 0; k < WIDTH * in.leaves; k++) {
+        if (in.order[k] < -1 || in.order[k] >= in.triangles) return STATUS_INVALID_ARGUMENT;
+    }
+    for (int64_t leaf = 0; leaf < in.leaves; leaf++) {
+        double* block = in.blocks + 9 * WIDTH * leaf;
+        for (int k = 0; k < WIDTH; k++) {
+            const int64_t triangle = in.order[WIDTH * leaf + k];
+            for (int j = 0; j < 9; j++) {
+                const double* from = in.corners + 9 * triangle;
+                const double x = triangle < 0 ? 0.0 : j < 3 ? from[j] : from[j] - from[j % 3];
+                block[WIDTH * j + k] = x;
+            }
+        }
+    }
+    // Children have higher numbers than the nodes that they are in.
+    for (int64_t number = in.nodes_count - 1; number >= 0; number--) {
+        TreeNode& node = in.nodes[number];
+        for (int k = 0; k < WIDTH; k++) {
+            const int32_t child = node.children[k];
+            if (child == 0) continue;
+            Box box;
+            if (child > 0) {
+                if (child <= number || child >= in.nodes_count) return STATUS_INVALID_ARGUMENT;
+                const TreeNode& below = in.nodes[child];
+                for (int j = 0; j < WIDTH; j++) {
+                    if (below.children[j] == 0) continue;
+                    for (int axis = 0; axis < 3; axis++) {
+                        box.low[axis] = std::min(box.low[axis], below.planes[axis][j]);
+                        box.high[axis] = std::max(box.high[axis], below.planes[3 + axis][j]);
+                    }
+                }
+            } else {
+                if (~child >= in.leaves) return STATUS_INVALID_ARGUMENT;
+                for (int j = 0; j < WIDTH; j++) {
+                    const int64_t triangle = in.order[WIDTH * int64_t{~child} + j];
+                    if (triangle < 0) continue;
+                    for (int m = 0; m < 9; m++) {
+                        const double x = in.corners[9 * triangle + m];
+                        const double margin = ROUNDING * std::fabs(x);
+                        const int axis = m % 3;
+                        box.low[axis] = std::min(box.low[axis], static_cast<float>(x - margin));
+                        box.high[axis] = std::max(box.high[axis], static_cast<float>(x + margin));
+                    }
+                }
+            }
+            for (int axis = 0; axis < 3; axis++) {
+                node.planes[axis][k] = box.low[axis];
+                node.planes[3 + axis][k] = box.high[axis];
+            }
+        }
     }
     return STATUS_OK;
 }
