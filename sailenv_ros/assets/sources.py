@@ -17,7 +17,10 @@ from sailenv_ros.types.model import Asset
 
 __all__ = ["BUILD_COMMAND", "UnbuiltPack", "installed_packs", "installed_sources"]
 
-OPEN_SOURCES = ("sailenv_content.families.source:FamilySource",)
+OPEN_SOURCES = (
+    "sailenv_content.families.source:FamilySource",
+    "sailenv_content.people.source:PeopleSource",
+)
 """Sources that make what a name describes, as ``module:name``: content knows this package."""
 
 _log = logging.getLogger(__name__)

@@ -9,6 +9,15 @@ from typing import Any
 
 from rich.console import Console
 
+from sailenv_content.people.fetch_bodies import (
+    BODIES_COMMAND,
+    LICENCE,
+    SOURCE,
+    body_data,
+    body_folder,
+    fetch_bodies,
+)
+from sailenv_content.people.looks import people
 from sailenv_content.standard.fetch import SOURCES, kept_folder
 from sailenv_content.standard.pack_build import is_current, licence_files
 from sailenv_ros.assets.asset_library import AssetLibrary
@@ -45,6 +54,7 @@ def add_parser(subparsers: Any) -> None:
     build = actions.add_parser("build", help="fetch and make the standard pack of furniture")
     build.add_argument("--force", action="store_true", help="make it anew though it is there")
     build.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    actions.add_parser("people", help="fetch the data that people are made from")
     actions.add_parser("verify", help="check every file of packs, sources, baked light and caches")
     listed = actions.add_parser(
         "list", help="list every object, with its category, size and licence"
@@ -84,6 +94,7 @@ def run(args: argparse.Namespace) -> int:
     """Do what was asked; 0 if all is well."""
     return {
         "build": _build,
+        "people": _people,
         "list": _list,
         "credits": _credits,
         "sheet": _sheet,
@@ -104,6 +115,12 @@ def _build(args: argparse.Namespace) -> int:
     return 0
 
 
+def _people(args: argparse.Namespace) -> int:
+    fetch_bodies(say=print, check=True)
+    print(f"{body_folder()}: {len(people())} people")
+    return 0
+
+
 def _list(args: argparse.Namespace) -> int:
     for pack in installed_packs():
         print(f"{pack.folder}  {pack.content.title}".rstrip())
@@ -112,6 +129,12 @@ def _list(args: argparse.Namespace) -> int:
             print(f"  {name:<20} {entry.category:<16} {size:>18} cm  {entry.licence}")
     if not any(pack.folder == standard_pack_folder() for pack in installed_packs()):
         print("The furniture has not been built yet: sailenv assets build")
+    if body_data() is None:
+        print(f"The data of people has not been fetched yet: {BODIES_COMMAND}")
+    else:
+        print(f"{body_folder()}  {SOURCE}")
+        for name, look in people().items():
+            print(f"  {name:<20} {'person':<16} {look.title:<21} {LICENCE}")
     if args.sheet is not None:
         args.output = args.sheet
         return _sheet(args)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import AssetError
+from sailenv_ros.types.rig import Rig
 from sailenv_ros.types.shapes import (
     BoxShape,
     CollisionShape,
@@ -253,6 +254,8 @@ class Asset:
     opens : bool
         True for what moves on a joint of its piece: its light is that of moving objects, and what
         lies behind it is lit.
+    rig : Rig or None
+        Skeleton by which the model deforms, if it has one.
 
     Raises
     ------
@@ -273,6 +276,7 @@ class Asset:
     moving: tuple[MovingPart, ...] = ()
     still: Asset | None = None
     opens: bool = False
+    rig: Rig | None = None
 
     def __post_init__(self) -> None:
         taken = [place for part in self.parts for place in part.meshes]

@@ -1,0 +1,93 @@
+"""From a person's build to the vertices of the body: the sum of MakeHuman's macro targets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_content.people.makehuman import BODY_VERTICES, BodyData
+
+__all__ = ["Build", "figure"]
+
+Doubles = NDArray[np.float64]
+Shares = dict[str, float]
+
+_AGES = ("baby", "child", "young", "old")
+_AGE_YEARS = (1.0, 12.0, 25.0, 90.0)
+_LEAST_SHARE = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Build:
+    """What a body is like.
+
+    Attributes
+    ----------
+    female : float
+        0 to 1.
+    age_years : float
+        1 to 90.
+    muscle, weight, height, proportions : float
+        0 to 1; 0.5 is the average of that age.
+    african, asian, caucasian : float
+        Shares of the three shapes of faces and bodies that the data has.
+    """
+
+    female: float
+    age_years: float
+    muscle: float = 0.5
+    weight: float = 0.5
+    height: float = 0.5
+    proportions: float = 0.7
+    african: float = 1.0
+    asian: float = 1.0
+    caucasian: float = 1.0
+
+
+def figure(data: BodyData, build: Build) -> Doubles:
+    """Return the (V, 3) vertices of a body and its helpers [m]; the soles are at z = 0."""
+    vertices = data.base.copy()
+    for name, share in _targets(build):
+        if share > _LEAST_SHARE:
+            vertices += share * data.target(name)
+    vertices[:, 2] -= vertices[:BODY_VERTICES, 2].min()
+    return vertices
+
+
+def _targets(build: Build) -> Iterator[tuple[str, float]]:
+    genders = {"male": 1.0 - build.female, "female": build.female}
+    ages = _between(build.age_years, _AGE_YEARS, _AGES)
+    muscles = _between(build.muscle, (0.0, 0.5, 1.0), ("minmuscle", "averagemuscle", "maxmuscle"))
+    weights = _between(build.weight, (0.0, 0.5, 1.0), ("minweight", "averageweight", "maxweight"))
+    heights = {"minheight": 1.0 - build.height, "maxheight": build.height}
+    whole = build.african + build.asian + build.caucasian
+    races = {
+        "african": build.african / whole,
+        "asian": build.asian / whole,
+        "caucasian": build.caucasian / whole,
+    }
+    for race, gender, age in product(races, genders, ages):
+        share = races[race] * genders[gender] * ages[age]
+        yield f"macrodetails/{race}-{gender}-{age}", share
+    for gender, age, muscle, weight in product(genders, ages, muscles, weights):
+        share = genders[gender] * ages[age] * muscles[muscle] * weights[weight]
+        kind = f"{gender}-{age}-{muscle}-{weight}"
+        yield f"macrodetails/universal-{kind}", share
+        for height, part in heights.items():
+            yield f"macrodetails/height/{kind}-{height}", share * part
+        if age != "baby":
+            ideal = share * build.proportions
+            yield f"macrodetails/proportions/{kind}-idealproportions", ideal
+
+
+def _between(value: float, anchors: tuple[float, ...], names: tuple[str, ...]) -> Shares:
+    """Return the shares of the two anchors that a value lies between."""
+    place = int(np.clip(np.searchsorted(anchors, value) - 1, 0, len(anchors) - 2))
+    share = (value - anchors[place]) / (anchors[place + 1] - anchors[place])
+    share = min(max(share, 0.0), 1.0)
+    found = {names[place]: 1.0 - share, names[place + 1]: share}
+    return {name: part for name, part in found.items() if part > 0.0}
