@@ -360,7 +360,11 @@ class _Maker:
         if kind.bridging:
             raised = smoothed(own, triangles, kind.bridging) - own
             outward = np.einsum("vk,vk->v", raised, normals)
-            ease = ease + np.where(self._marks.is_arm, 0.3, 1.0) * np.clip(outward, 0.0, 0.05)
+            # Not at the shoulders, which would look padded.
+            y, z = self._marks.base[:, 1], self._marks.base[:, 2]
+            beside = np.clip((np.abs(y) - 0.09) / 0.06, 0.0, 1.0) * (z > 0.36)
+            share = np.where(self._marks.is_arm, 0.15, 1.0 - 0.85 * beside)
+            ease = ease + share * np.clip(outward, 0.0, 0.05)
         moved = own + size * ease[:, None] * normals
         if kind.label == "shoes":
             low = np.clip((0.045 - (own[:, 2] - SOLE_M) / size) / 0.04, 0.0, 1.0)

@@ -1,0 +1,80 @@
+"""The upper body: spine, head, arms and hands, standing at ease or walking."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.postures.limbs import bend_arm
+from sailenv_ros.postures.skeleton import turn_about
+from sailenv_ros.types.rig import Rig
+
+__all__ = ["SIDES", "breathing", "hands_at_ease", "hanging_arms", "looking"]
+
+Doubles = NDArray[np.float64]
+
+SIDES = (("L", 1.0), ("R", -1.0))
+
+_DROP_DEG = 9.0
+
+_CURL_DEG = (16.0, 22.0, 14.0)
+_MOST_LOOK_DEG = (62.0, 32.0)
+"""Of the head, sideways and up or down [deg]."""
+
+
+def hanging_arms(
+    rig: Rig, chest: Doubles, swing_deg: tuple[float, float], ease_deg: float = 10.0
+) -> dict[str, Doubles]:
+    """Return the turns of arms that hang, swung forward by angles, left and right [deg]."""
+    turns: dict[str, Doubles] = {}
+    for (side, sign), swing in zip(SIDES, swing_deg, strict=True):
+        angle = np.radians(swing)
+        bend = angle + np.radians(ease_deg + 0.6 * max(swing, 0.0))
+        upper = np.array([np.sin(angle), 0.16 * sign, -np.cos(angle)])
+        lower = np.array([np.sin(bend), 0.03 * sign, -np.cos(bend)])
+        turns |= bend_arm(rig, side, chest, None, upper, lower)
+        # Shoulders are raised at rest, where arms are spread.
+        turns[f"shoulder01.{side}"] = chest @ turn_about("x", -_DROP_DEG * sign)
+    return turns
+
+
+def hands_at_ease(rig: Rig, turns: dict[str, Doubles]) -> dict[str, Doubles]:
+    """Return the turns of fingers that are curled a little, for arms that are turned already."""
+    found: dict[str, Doubles] = {}
+    for side, sign in SIDES:
+        wrist = turns[f"lowerarm01.{side}"]
+        across = rig.head(f"finger2-1.{side}") - rig.head(f"finger5-1.{side}")
+        for finger in range(1, 6):
+            along = rig.head(f"finger{finger}-2.{side}") - rig.head(f"finger{finger}-1.{side}")
+            axis = across - (across @ along) * along / (along @ along)
+            axis /= np.linalg.norm(axis)
+            turn = wrist
+            for joint, curl in enumerate(_CURL_DEG, start=1):
+                degrees = curl * (0.4 if finger == 1 else 0.7 + 0.1 * finger)
+                turn = turn @ _about(axis, sign * degrees)
+                found[f"finger{finger}-{joint}.{side}"] = turn
+    return found
+
+
+def breathing(time_s: float, seed: int) -> float:
+    """Return how far a chest is raised, -1 to 1."""
+    return float(np.sin(2.0 * np.pi * (time_s / 3.7 + 0.37 * seed)))
+
+
+def looking(chest: Doubles, yaw_deg: float, pitch_deg: float) -> dict[str, Doubles]:
+    """Return the turns of neck and head that look sideways and down, from the chest [deg]."""
+    yaw = float(np.clip(yaw_deg, -_MOST_LOOK_DEG[0], _MOST_LOOK_DEG[0]))
+    pitch = float(np.clip(pitch_deg, -_MOST_LOOK_DEG[1], _MOST_LOOK_DEG[1]))
+
+    def share(part: float) -> Doubles:
+        return chest @ turn_about("z", part * yaw) @ turn_about("y", part * pitch)
+
+    return {"neck02": share(0.3), "neck03": share(0.55), "head": share(1.0)}
+
+
+def _about(axis: Doubles, degrees: float) -> Doubles:
+    angle = np.radians(degrees)
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turn: Doubles = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
+    return turn
