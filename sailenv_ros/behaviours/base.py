@@ -76,6 +76,11 @@ class BehaviourParameters(BaseModel):
         return False
 
     @property
+    def needs_person(self) -> bool:
+        """True if it moves nothing but people."""
+        return False
+
+    @property
     def viewer(self) -> str:
         """Name of the agent in whose view the object is kept; empty for none."""
         return ""
@@ -109,6 +114,8 @@ class BodyState:
         Of the joint that it is on [rad, rad/s] or [m, m/s]; 0 where there is none.
     joint_limits : (2,) tuple of float
         Least and greatest position of the joint; both 0 where there is none.
+    person : Person or None
+        Of a person, who is told where to go; see `behaviours.person`.
     """
 
     pose: Pose
@@ -121,6 +128,7 @@ class BodyState:
     joint_position: float = 0.0
     joint_velocity: float = 0.0
     joint_limits: tuple[float, float] = (0.0, 0.0)
+    person: Any = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

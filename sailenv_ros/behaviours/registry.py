@@ -20,7 +20,10 @@ from sailenv_ros.behaviours.base import BehaviourKind, RunningBehaviour
 from sailenv_ros.behaviours.joint_motion import open_and_close
 from sailenv_ros.behaviours.poltergeist import poltergeist
 from sailenv_ros.behaviours.rotate_rigidbody import rotate_rigidbody
+from sailenv_ros.behaviours.sit import sit
 from sailenv_ros.behaviours.uniform_movement import uniform_movement_random_bounce
+from sailenv_ros.behaviours.visit import visit
+from sailenv_ros.behaviours.walk_around import walk_around
 from sailenv_ros.behaviours.wander_plane import wander_plane
 from sailenv_ros.behaviours.waypoints import catmull_waypoints, linear_waypoints
 from sailenv_ros.behaviours.wrench import wrench
@@ -48,6 +51,9 @@ _KINDS: Mapping[str, BehaviourKind] = MappingProxyType(
             catmull_waypoints,
             wrench,
             open_and_close,
+            walk_around,
+            sit,
+            visit,
         )
     }
 )

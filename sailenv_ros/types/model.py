@@ -298,6 +298,10 @@ class Asset:
         """Return what is drawn as one of its parts; the same object each time."""
         return self.model.only(part.meshes)
 
+    def meshes_of(self, part: AssetPart | None) -> tuple[int, ...]:
+        """Return the places in ``model.parts`` of a part's meshes; None: of the body's."""
+        return self._body_meshes if part is None else part.meshes
+
     @property
     def _body_meshes(self) -> tuple[int, ...]:
         taken = {place for part in self.parts for place in part.meshes}

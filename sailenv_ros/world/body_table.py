@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest, NameTaken, PhysicsError
+from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
@@ -20,6 +21,7 @@ from sailenv_ros.world.instance_ids import InstanceIds
 from sailenv_ros.world.joint_table import JointTable
 from sailenv_ros.world.jointed_bodies import make_bodies, make_body
 from sailenv_ros.world.labelled_pieces import LabelledPiece, find_piece, pieces_of, states_of
+from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.placement import Placement
 
 __all__ = ["BodyTable"]
@@ -169,9 +171,26 @@ class BodyTable:
         rows = [poses[piece.body_id] for piece in self.pieces]
         return np.stack(rows) if rows else np.zeros((0, 4, 4))
 
-    def states(self, world_from_body: NDArray[np.float64]) -> InstanceStates:
+    def states(
+        self, world_from_body: NDArray[np.float64], deformations: Mapping[int, Deformation]
+    ) -> InstanceStates:
         """Return where all pieces are and how they move, at poses (N, 4, 4) that were just read."""
-        return states_of(self.pieces, world_from_body, self.histories())
+        return states_of(self.pieces, world_from_body, self.histories(), deformations)
+
+    def deformations(self) -> Mapping[int, Deformation]:
+        """Return the vertices of the pieces that deform, by their ids."""
+        shapes = {
+            body_id: body.deformation()
+            for body_id, body in self._bodies.items()
+            if isinstance(body, PersonBody)
+        }
+        if not shapes:
+            return {}
+        return {
+            piece.id: shapes[piece.body_id].only(piece.meshes)
+            for piece in self.pieces
+            if piece.body_id in shapes
+        }
 
     def histories(self) -> NDArray[np.int64]:
         """Return (N,) numbers; a piece's past before its number changed has been cut off."""

@@ -141,7 +141,7 @@ class ContentsMaker:
             asset=name,
             category_id=category_id,
             category=self._categories[category_id].name,
-            static=placement.static,
+            static=piece.body.placement.static,
             low_m=_scaled(low, placement.scale),
             high_m=_scaled(high, placement.scale),
             parent=parent,
@@ -159,6 +159,7 @@ class ContentsMaker:
             lit_by=self._lit_by.get(piece.body_id, ()),
             stands=placement.outside is None and (placement.static or _stays(placement)),
             outside=placement.outside,
+            deforms=asset.rig is not None,
         )
 
 

@@ -21,6 +21,7 @@ from sailenv_ros.world.bodies import NOT_THERE, Body, FrustumPlanes, Vector3
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.joint_tree import JointLink, JointTree
 from sailenv_ros.world.kinematics import Twist, composed, cross, link_pose, link_velocity
+from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.placement import JointPlacement, Placement
 
 __all__ = ["JointedBody", "make_bodies", "make_body"]
@@ -35,7 +36,11 @@ for _zeros in _STILL:
 
 def make_body(client: BulletClient, placement: Placement) -> Body:
     """Make the body of a placement; one on a joint is in the engine once a tree has it."""
-    return Body(client, placement) if placement.joint is None else JointedBody(client, placement)
+    if placement.joint is not None:
+        return JointedBody(client, placement)
+    if placement.asset.rig is not None:
+        return PersonBody(client, placement)
+    return Body(client, placement)
 
 
 def make_bodies(client: BulletClient, placements: Iterable[Placement]) -> list[Body]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import AssetPart
@@ -42,6 +43,11 @@ class LabelledPiece:
         """Its name in the scene."""
         name = self.body.placement.name
         return name if self.part is None else f"{name}{PART_MARK}{self.part.name}"
+
+    @property
+    def meshes(self) -> tuple[int, ...]:
+        """Places of its meshes in the parts of the body's model."""
+        return self.body.placement.asset.meshes_of(self.part)
 
 
 def pieces_of(
@@ -88,6 +94,7 @@ def states_of(
     pieces: Sequence[LabelledPiece],
     world_from_body: NDArray[np.float64],
     histories: NDArray[np.int64],
+    deformations: Mapping[int, Deformation],
 ) -> InstanceStates:
     """Return where pieces are and how they move.
 
@@ -98,6 +105,8 @@ def states_of(
         A pose for each, that was just read.
     histories : (N,) int64
         As of `InstanceStates`.
+    deformations : mapping of int to Deformation
+        The same.
     """
     moving = [
         piece.body.origin_velocity(matrix)
@@ -114,4 +123,5 @@ def states_of(
         angular_velocities=velocities[:, 1],
         scales=np.array(scales, np.float64).reshape(-1, 3),
         histories=histories,
+        deformations=deformations,
     )

@@ -22,6 +22,7 @@ from sailenv_ros.behaviours import (
 from sailenv_ros.world import actuation
 from sailenv_ros.world.bodies import Body, FrustumPlanes
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
+from sailenv_ros.world.person_body import PersonBody
 
 __all__ = ["StepActions"]
 
@@ -56,6 +57,7 @@ class StepActions:
         acting = [body for body in bodies if body.acts]
         driven = ((body, body.forces()) for body in acting)
         self._driven = [(body, forces) for body, forces in driven if forces]
+        self._people = [body for body in acting if isinstance(body, PersonBody)]
         self._floating = [body for body in acting if body.floats]
         self._lifts = [tuple(-body.mass_kg * g for g in client.gravity) for body in self._floating]
         self._is_wall: dict[tuple[int, int], bool] = {}
@@ -65,6 +67,8 @@ class StepActions:
         if self._driven:
             careful = self._behave(time_s)
             self._limit_penetration(careful)
+        for person in self._people:
+            person.advance(time_s)
         for body, lift in zip(self._floating, self._lifts, strict=True):
             actuation.push(self._client, body.bullet_id, lift, link=body.link)
 
@@ -84,6 +88,8 @@ class StepActions:
                 kind = running.kind if together else None
                 places[place].setdefault(kind, []).append((body, running))
             # What rests is not asked for its speed: that would cost more than all else.
+            if isinstance(body, PersonBody):
+                continue
             if body.link == LINK_OF_BASE and (acted or body.is_fast):
                 careful.append(body)
         planes = _once(self._frustum_planes)

@@ -1,0 +1,79 @@
+"""A person, as behaviours see one: it is told where to go, and says what it does."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Protocol, TypeAlias
+
+import numpy as np
+from pydantic import Field
+
+from sailenv_ros.behaviours.base import Action, BehaviourParameters
+from sailenv_ros.scene.field_types import Number
+
+__all__ = ["Activity", "Person", "PersonParameters", "pause_between", "waits"]
+
+Activity: TypeAlias = Literal["standing", "walking", "sitting down", "seated", "getting up"]
+
+Seconds = Annotated[float, Number(least=0.0, most=1e5, unit="s")]
+
+ASK_AGAIN_S = 0.5
+"""Time after which one who found no way asks again [s]."""
+
+
+class Person(Protocol):
+    """A person who can walk, sit and look."""
+
+    @property
+    def activity(self) -> Activity:
+        """What it does now."""
+
+    def random_place(self, rng: np.random.Generator) -> tuple[float, float] | None:
+        """Return a free place that it can reach [m]; None if there is none."""
+
+    def walk_to(self, place: tuple[float, float]) -> bool:
+        """Begin to walk to a place [m]; False, and nothing begins, if no way leads there."""
+
+    def walk_near(self, name: str) -> bool:
+        """Begin to walk to where it stands before an object and faces it; False if it cannot."""
+
+    def sit_on(self, name: str) -> bool:
+        """Begin to walk to a seat and sit down; False if it cannot."""
+
+    def get_up(self) -> None:
+        """Begin to get up, if it sits."""
+
+    def seats(self) -> tuple[str, ...]:
+        """Return the names of seats that nobody has taken."""
+
+    def things(self) -> tuple[str, ...]:
+        """Return the names of furniture that one may look at."""
+
+    def look_at(self, name: str) -> None:
+        """Look at an object from now on; the empty name looks ahead."""
+
+
+class PersonParameters(BehaviourParameters):
+    """Base of the parameters of behaviours of people."""
+
+    pause: tuple[Seconds, Seconds] = Field(
+        default=(1.0, 4.0), description="shortest and longest time between two activities [s]"
+    )
+
+    @property
+    def needs_person(self) -> bool:
+        """True: nothing else can do it."""
+        return True
+
+
+def waits(memory: dict[str, Any], time_s: float) -> bool:
+    """Return whether one who behaves waits until a time that its memory has."""
+    return bool(time_s < memory.get("until_s", 0.0))
+
+
+def pause_between(
+    parameters: PersonParameters, memory: dict[str, Any], time_s: float, rng: np.random.Generator
+) -> Action:
+    """Wait for a random time."""
+    low, high = parameters.pause
+    memory["until_s"] = time_s + float(rng.uniform(low, max(low, high)))
+    return Action()

@@ -1,0 +1,191 @@
+"""What people know of the world around them: free places, ways, seats, and each other.
+
+Bodies in, places and ways out. A map of free space is made when a way is wanted and what stands
+around has moved by more than a hand's breadth since the last one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.space.free_space import FREE, OCCUPIED, BodySize, FreeSpace
+from sailenv_ros.space.grid import map_free_space
+from sailenv_ros.space.outlines import Solid, solids_of
+from sailenv_ros.types.labels import ROOM_PARTS
+from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.seats import Seat, seats_of
+
+__all__ = ["Crowd", "Disc", "body_size"]
+
+Doubles = NDArray[np.float64]
+Place = tuple[float, float]
+
+Disc = tuple[float, float, float]
+"""A place that someone takes: x, y and a radius [m]."""
+
+_ROUNDED_M = 0.05
+_NEAR_M = 0.9
+"""How far from a free place one may stand or want to go [m]."""
+
+_RADIUS = 0.145
+"""Of a body, as a share of its height."""
+
+
+class Crowd:
+    """The surroundings of all people of a world.
+
+    Parameters
+    ----------
+    bodies : callable
+        Returns the bodies that are no people.
+    others : callable
+        Returns the discs of movers.
+    """
+
+    def __init__(
+        self,
+        bodies: Callable[[], Iterable[Body]],
+        others: Callable[[], Iterable[Disc]],
+    ) -> None:
+        self._bodies, self._others = bodies, others
+        self._key: bytes = b""
+        self._maps: dict[BodySize, FreeSpace] = {}
+        self._seats: tuple[Seat, ...] | None = None
+        self.people: dict[str, Disc] = {}
+        self.taken: dict[str, tuple[float, float]] = {}
+
+    def discs(self, without: str) -> list[Disc]:
+        """Return what others take: people but one, and movers."""
+        found = [disc for name, disc in self.people.items() if name != without]
+        return [*found, *self._others()]
+
+    def seats(self) -> tuple[Seat, ...]:
+        """Return all seats."""
+        self._follow()
+        if self._seats is None:
+            self._seats = tuple(seat for body in self._bodies() for seat in seats_of(body))
+        return self._seats
+
+    def body(self, name: str) -> Body | None:
+        """Return the body of that name, if there is one."""
+        return next((body for body in self._bodies() if body.placement.name == name), None)
+
+    def things(self) -> tuple[str, ...]:
+        """Return the names of furniture."""
+        return tuple(
+            body.placement.name
+            for body in self._bodies()
+            if body.placement.asset.category not in ROOM_PARTS and body.collides
+            and float(np.ptp(body.placement.asset.model.bounds()[:, 2])) > 0.3
+        )
+
+    def free_space(self, size: BodySize) -> FreeSpace:
+        """Return the map for a body, without people."""
+        self._follow()
+        if size not in self._maps:
+            solids = [solid for body in self._bodies() for solid in _solids(body)]
+            self._maps[size] = map_free_space(solids, size)
+        return self._maps[size]
+
+    def random_place(
+        self, size: BodySize, start: Place, rng: np.random.Generator
+    ) -> Place | None:
+        """Return a free place that can be reached; None if there is none."""
+        space = self.free_space(size)
+        cell = self._nearest(space, start)
+        if cell is None:
+            return None
+        region = space.regions == space.regions[cell]
+        rows, columns = np.nonzero(region)
+        number = int(rng.integers(len(rows)))
+        x, y, _ = space.position_of(int(rows[number]), int(columns[number]))
+        return x, y
+
+    def way(
+        self, size: BodySize, start: Place, goal: Place, around: Iterable[Disc] = ()
+    ) -> list[Place] | None:
+        """Return the corners of a way between two places, or None.
+
+        Places beside free space are joined to it by a straight line.
+        """
+        space = self.free_space(size)
+        for x, y, radius in around:
+            space = _without(space, x, y, radius + size.radius_m)
+        first, last = self._nearest(space, start), self._nearest(space, goal)
+        if first is None or last is None:
+            return None
+        begin, end = (space.position_of(*cell)[:2] for cell in (first, last))
+        try:
+            corners = space.path(
+                start if space.cell_of(start) == first else begin,
+                goal if space.cell_of(goal) == last else end,
+            )
+        except InvalidRequest:
+            return None
+        found = [(float(x), float(y)) for x, y, _ in corners]
+        if space.cell_of(start) != first:
+            found.insert(0, start)
+        if space.cell_of(goal) != last:
+            found.append(goal)
+        return found
+
+    # -- inside ----------------------------------------------------------------------------
+
+    def _nearest(self, space: FreeSpace, place: Place) -> tuple[int, int] | None:
+        """Return the free cell that is nearest to a place, if one is near."""
+        cell = space.cell_of(place)
+        if cell is not None and space.cells[cell] == FREE:
+            return cell
+        rows, columns = np.nonzero(space.cells == FREE)
+        if not len(rows):
+            return None
+        side = space.resolution_m
+        x = space.origin_m[0] + (columns + 0.5) * side - place[0]
+        y = space.origin_m[1] + (rows + 0.5) * side - place[1]
+        away = x * x + y * y
+        number = int(away.argmin())
+        if away[number] > _NEAR_M**2:
+            return None
+        return int(rows[number]), int(columns[number])
+
+    def _follow(self) -> None:
+        """Forget what is known if things have moved."""
+        places = []
+        for body in self._bodies():
+            matrix = body.world_from_body()
+            places.append(np.round(matrix[:3] / [*([0.2] * 3), _ROUNDED_M]).astype(np.int64))
+        key = np.array(places).tobytes()
+        if key != self._key:
+            self._key, self._maps, self._seats = key, {}, None
+
+
+def body_size(height_m: float, floor_m: float) -> BodySize:
+    """Return the cylinder that stands for a person of a height on a floor [m]."""
+    return BodySize(
+        height_m=max(round(1.06 * height_m, 1), 0.4),
+        radius_m=round(_RADIUS * height_m, 2),
+        floor_m=round(floor_m, 3),
+        step_m=0.05,
+    )
+
+
+def _solids(body: Body) -> Iterable[Solid]:
+    placement = body.placement
+    return solids_of(placement.asset.collision, placement.scale, body.world_from_body())
+
+
+def _without(space: FreeSpace, x: float, y: float, radius_m: float) -> FreeSpace:
+    """Return a map in which a disc is taken."""
+    side = space.resolution_m
+    height, width = space.cells.shape
+    columns = space.origin_m[0] + (np.arange(width) + 0.5) * side - x
+    rows = space.origin_m[1] + (np.arange(height) + 0.5) * side - y
+    near = rows[:, None] ** 2 + columns[None] ** 2 < radius_m**2
+    cells = np.where(near & (space.cells == FREE), OCCUPIED, space.cells).astype(np.int8)
+    cells.flags.writeable = False
+    return replace(space, cells=cells)
