@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -81,7 +82,7 @@ class Moment:
     before_m: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Way:
     """Steps from where the feet stand.
 
@@ -105,10 +106,16 @@ class Way:
 
     def feet_after(self, count: int) -> tuple[FootPrint, FootPrint]:
         """Return where the feet stand after so many steps."""
-        feet = list(self.start)
-        for side, place in self.prints[:count]:
-            feet[side] = place
-        return feet[0], feet[1]
+        return self._feet[min(count, len(self.prints))]
+
+    @cached_property
+    def _feet(self) -> tuple[tuple[FootPrint, FootPrint], ...]:
+        """Where the feet stand after each number of steps."""
+        found = [self.start]
+        for side, place in self.prints:
+            left, right = found[-1]
+            found.append((place, right) if side == 0 else (left, place))
+        return tuple(found)
 
     def at(self, time_s: float) -> Moment:
         """Return the body at a time since the beginning [s]."""

@@ -6,6 +6,7 @@ others turn with their parents.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -83,11 +84,20 @@ def aligned(
 
 
 def _frame(direction: Doubles, pole: Doubles) -> Doubles:
-    first = direction / np.linalg.norm(direction)
-    third = np.cross(first, pole)
-    length = float(np.linalg.norm(third))
-    if length < 1e-9:
-        third = np.cross(first, np.array([0.0, 1.0, 0.0]))
-        length = float(np.linalg.norm(third))
-    third /= length
-    return np.stack([first, np.cross(third, first), third], axis=1)
+    # Plain numbers: NumPy's cross takes longer than all else.
+    x, y, z = _unit(*direction.tolist())
+    a, b, c = pole.tolist()
+    u, v, w = y * c - z * b, z * a - x * c, x * b - y * a
+    if u * u + v * v + w * w < 1e-18:
+        u, v, w = -z, 0.0, x  # of a pole along y
+    u, v, w = _unit(u, v, w)
+    return np.array([
+        [x, v * z - w * y, u],
+        [y, w * x - u * z, v],
+        [z, u * y - v * x, w],
+    ])  # fmt: skip
+
+
+def _unit(x: float, y: float, z: float) -> tuple[float, float, float]:
+    length = math.sqrt(x * x + y * y + z * z)
+    return x / length, y / length, z / length

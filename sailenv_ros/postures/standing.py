@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,20 +42,34 @@ def hanging_arms(
 
 def hands_at_ease(rig: Rig, turns: dict[str, Doubles]) -> dict[str, Doubles]:
     """Return the turns of fingers that are curled a little, for arms that are turned already."""
-    found: dict[str, Doubles] = {}
-    for side, sign in SIDES:
-        wrist = turns[f"lowerarm01.{side}"]
-        across = rig.head(f"finger2-1.{side}") - rig.head(f"finger5-1.{side}")
-        for finger in range(1, 6):
-            along = rig.head(f"finger{finger}-2.{side}") - rig.head(f"finger{finger}-1.{side}")
-            axis = across - (across @ along) * along / (along @ along)
-            axis /= np.linalg.norm(axis)
-            turn = wrist
-            for joint, curl in enumerate(_CURL_DEG, start=1):
-                degrees = curl * (0.4 if finger == 1 else 0.7 + 0.1 * finger)
-                turn = turn @ _about(axis, sign * degrees)
-                found[f"finger{finger}-{joint}.{side}"] = turn
-    return found
+    return {
+        joint: turns[f"lowerarm01.{side}"] @ turn
+        for side, joints in _curls(rig).items()
+        for joint, turn in joints.items()
+    }
+
+
+_known: WeakKeyDictionary[Rig, dict[str, dict[str, Doubles]]] = WeakKeyDictionary()
+
+
+def _curls(rig: Rig) -> dict[str, dict[str, Doubles]]:
+    """Return the turns of curled fingers from the forearm, by sides and joints."""
+    if rig not in _known:
+        found: dict[str, dict[str, Doubles]] = {}
+        for side, sign in SIDES:
+            found[side] = {}
+            across = rig.head(f"finger2-1.{side}") - rig.head(f"finger5-1.{side}")
+            for finger in range(1, 6):
+                along = rig.head(f"finger{finger}-2.{side}") - rig.head(f"finger{finger}-1.{side}")
+                axis = across - (across @ along) * along / (along @ along)
+                axis /= np.linalg.norm(axis)
+                turn = np.eye(3)
+                for joint, curl in enumerate(_CURL_DEG, start=1):
+                    degrees = curl * (0.4 if finger == 1 else 0.7 + 0.1 * finger)
+                    turn = turn @ _about(axis, sign * degrees)
+                    found[side][f"finger{finger}-{joint}.{side}"] = turn
+        _known[rig] = found
+    return _known[rig]
 
 
 def breathing(time_s: float, seed: int) -> float:

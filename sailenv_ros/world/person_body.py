@@ -6,6 +6,7 @@ time. In the engine it is capsules along its bones, which push others aside.
 
 from __future__ import annotations
 
+import math
 import zlib
 from dataclasses import replace
 
@@ -46,7 +47,7 @@ __all__ = ["PersonBody"]
 Doubles = NDArray[np.float64]
 Place = tuple[float, float]
 
-_LIMB_STEPS = 4
+_LIMB_STEPS = 8
 """Steps of physics after which the capsules of limbs follow."""
 
 _BLOCKED_S = 1.2
@@ -413,10 +414,13 @@ class PersonBody(Body):
 
     def _matrix_of_moment(self) -> Doubles:
         moment = self._moment()
-        pose = Pose.from_rpy_deg(
-            (moment.x, moment.y, self._floor_m), (0.0, 0.0, float(np.degrees(moment.yaw)))
-        )
-        return pose.matrix()
+        c, s = math.cos(moment.yaw), math.sin(moment.yaw)
+        return np.array([
+            [c, -s, 0.0, moment.x],
+            [s, c, 0.0, moment.y],
+            [0.0, 0.0, 1.0, self._floor_m],
+            [0.0, 0.0, 0.0, 1.0],
+        ])  # fmt: skip
 
     def _stride(self) -> Stride:
         stride = self._figure.stride
