@@ -6,15 +6,18 @@ Says on standard output what is ready, one line each, and on standard error how 
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
+from sailenv_content.people.fetch_bodies import body_data, fetch_bodies
 from sailenv_content.standard.pack_build import is_current
 from sailenv_ros.assets.recipe import standard_recipe
 from sailenv_ros.cli.arguments import add_allow_modules
 from sailenv_ros.cli.furniture import build_furniture
 from sailenv_ros.cli.scene_bake import ensure_baked, rooms
+from sailenv_ros.errors import AssetError, StorageError
 from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.simulation.background_build import READY
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -63,10 +66,22 @@ def run(args: argparse.Namespace) -> int:
     if args.only:
         return 0
     _furniture(None, args.jobs, "furniture")
+    _people()
     if args.light == "baked":
         for scene in rooms(SceneLibrary(args.scenes, allow_modules=args.allow_modules)):
             _light(scene, args)
     return 0
+
+
+def _people() -> None:
+    """Fetch what people are made from; rooms without people need it not."""
+    if body_data() is not None:
+        return
+    try:
+        fetch_bodies()
+        print(f"{READY}people", flush=True)
+    except (AssetError, StorageError) as problem:
+        print(f"NOTE: there will be no people: {problem}", file=sys.stderr)
 
 
 def _names_of(scene: str, scene_paths: list[Path]) -> Collection[str]:

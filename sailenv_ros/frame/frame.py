@@ -11,6 +11,7 @@ from sailenv_ros.frame.data import DrawAmodal, FrameData
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.frame.truth.frame_objects import keypoints_of, objects_of
 from sailenv_ros.frame.truth.object_table import Keypoints, ObjectTable
+from sailenv_ros.frame.truth.person_points import person_points, skeleton_of
 from sailenv_ros.frame.truth.point_cloud import PointCloud, points_of
 
 __all__ = ["Frame"]
@@ -92,6 +93,17 @@ class Frame(FrameData):
             If there is no object of that id, or the scene is not known.
         """
         return keypoints_of(self, self.objects, instance_id)
+
+    def joints(self, instance_id: int) -> Keypoints:
+        """Return all joints of a person, as `keypoints` returns its keypoints.
+
+        Raises
+        ------
+        InvalidRequest
+            If there is no person of that id.
+        """
+        own = skeleton_of(self, instance_id)
+        return person_points(self, instance_id, own.joint_names, own.joints)
 
     def points(self, *, in_world: bool = True) -> PointCloud:
         """Return the points that the pixels see, with their colours and labels.

@@ -27,6 +27,7 @@ _RANDOM = {
     "RandomEnvironment": "Random surroundings",
     "RandomCamera": "Random cameras",
     "RandomSpawn": "Random spawns",
+    "RandomPeople": "Random people",
     "RandomBehaviour": "Random behaviours",
     "RandomDistractors": "Random distractors",
 }

@@ -17,8 +17,11 @@ from numpy.typing import ArrayLike, NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.rebuilding import RebuiltByFields
+from sailenv_ros.types.skeleton import Skeleton
 
 __all__ = ["InstanceStates", "rotation_matrices"]
+
+_NO_NUMBERS = ("deformations", "skeletons")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -48,6 +51,8 @@ class InstanceStates(RebuiltByFields):
         motion. All 0 unless given.
     deformations : mapping of int to Deformation
         Vertices of the instances that deform, by their ids. Messages and files leave them out.
+    skeletons : mapping of int to Skeleton
+        Of people, by their ids; left out there, too.
 
     Raises
     ------
@@ -64,6 +69,7 @@ class InstanceStates(RebuiltByFields):
     scales: NDArray[np.float64] = None  # type: ignore[assignment]  # an array once constructed
     histories: NDArray[np.int64] = None  # type: ignore[assignment]  # the same
     deformations: Mapping[int, Deformation] = field(default_factory=dict)
+    skeletons: Mapping[int, Skeleton] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         ids = _frozen("ids", self.ids, np.uint16, (None,))
@@ -96,7 +102,7 @@ class InstanceStates(RebuiltByFields):
         """Return whether all numbers are the same."""
         if not isinstance(other, InstanceStates):
             return NotImplemented
-        names = [entry.name for entry in fields(self) if entry.name != "deformations"]
+        names = [entry.name for entry in fields(self) if entry.name not in _NO_NUMBERS]
         return self.deformations == other.deformations and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in names
         )

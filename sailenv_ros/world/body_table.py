@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest, NameTaken, PhysicsError
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.skeleton import Skeleton
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
@@ -175,7 +176,16 @@ class BodyTable:
         self, world_from_body: NDArray[np.float64], deformations: Mapping[int, Deformation]
     ) -> InstanceStates:
         """Return where all pieces are and how they move, at poses (N, 4, 4) that were just read."""
-        return states_of(self.pieces, world_from_body, self.histories(), deformations)
+        return states_of(
+            self.pieces, world_from_body, self.histories(), deformations, self._skeletons()
+        )
+
+    def _skeletons(self) -> Mapping[int, Skeleton]:
+        return {
+            body_id: body.skeleton()
+            for body_id, body in self._bodies.items()
+            if isinstance(body, PersonBody)
+        }
 
     def deformations(self) -> Mapping[int, Deformation]:
         """Return the vertices of the pieces that deform, by their ids."""

@@ -13,6 +13,7 @@ from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import AssetPart
+from sailenv_ros.types.skeleton import Skeleton
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 
@@ -95,6 +96,7 @@ def states_of(
     world_from_body: NDArray[np.float64],
     histories: NDArray[np.int64],
     deformations: Mapping[int, Deformation],
+    skeletons: Mapping[int, Skeleton],
 ) -> InstanceStates:
     """Return where pieces are and how they move.
 
@@ -106,6 +108,7 @@ def states_of(
     histories : (N,) int64
         As of `InstanceStates`.
     deformations : mapping of int to Deformation
+    skeletons : mapping of int to Skeleton
         The same.
     """
     moving = [
@@ -124,4 +127,5 @@ def states_of(
         scales=np.array(scales, np.float64).reshape(-1, 3),
         histories=histories,
         deformations=deformations,
+        skeletons=skeletons,
     )

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.types.rig import Rig
+from sailenv_ros.world.actuation import wake
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 
 __all__ = ["Limbs"]
@@ -69,6 +70,17 @@ class Limbs:
             self._client.resetBasePositionAndOrientation(
                 body, middle.tolist(), _upright_to(end - begin)
             )
+        self._wake_touched()
+
+    def _wake_touched(self) -> None:
+        """Wake what sleeps where a limb is now: the engine does not do it for what it does not move."""
+        client = self._client
+        found: set[int] = set()
+        for body in self.ids:
+            found.update(other for other, _ in client.getOverlappingObjects(*client.getAABB(body)) or ())
+        for other in sorted(found.difference(self.ids)):
+            if client.getDynamicsInfo(other, LINK_OF_BASE)[0]:
+                wake(client, other)
 
     def pass_through(self, other: int, *, passes: bool) -> None:
         """Let the limbs pass through a body of the engine, or not."""

@@ -35,6 +35,7 @@ from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.rig import Rig
+from sailenv_ros.types.skeleton import Skeleton
 from sailenv_ros.world.bodies import Body, FrustumPlanes, Vector3
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.crowd import Crowd, body_size
@@ -254,26 +255,23 @@ class PersonBody(Body):
             self._posed = key, Deformation(model, made)
         return self._posed[1]
 
-    def joint_places(self) -> Doubles:
-        """Return (J, 3): where its joints are in the world [m]."""
-        _, places = joint_frames(self._rig, self.posture)
-        scaled = places * self._scale
-        found: Doubles = scaled @ self._matrix_now[:3, :3].T + self._matrix_now[:3, 3]
-        return found
-
-    def point_places(self) -> Doubles:
-        """Return (P, 3): where its keypoints are in the world [m]."""
+    def skeleton(self) -> Skeleton:
+        """Return where its joints and keypoints are now."""
         rig = self._rig
         turns, places = joint_frames(rig, self.posture)
-        found = np.array([
+        points = np.array([
             places[point.joint]
             + turns[point.joint] @ (np.asarray(point.position_m) - rig.heads[point.joint])
             for point in rig.points
         ]).reshape(-1, 3)  # fmt: skip
-        world: Doubles = (
-            found * self._scale @ self._matrix_now[:3, :3].T + self._matrix_now[:3, 3]
+        matrix = self._matrix_now
+        return Skeleton(
+            joint_names=rig.names,
+            parents=rig.parents,
+            joints=self._scale * places @ matrix[:3, :3].T + matrix[:3, 3],
+            point_names=tuple(point.name for point in rig.points),
+            points=self._scale * points @ matrix[:3, :3].T + matrix[:3, 3],
         )
-        return world
 
     # -- what behaviours tell it (see behaviours.person.Person) --------------------------------
 

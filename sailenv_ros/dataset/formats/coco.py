@@ -27,7 +27,9 @@ from sailenv_ros.dataset.formats.data_files import write_json, write_png
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.images import frame_record
 from sailenv_ros.dataset.formats.panoptic import panoptic_segments
+from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.object_table import ObjectTable
+from sailenv_ros.types.skeleton import COCO_KEYPOINTS, COCO_SKELETON
 
 __all__ = ["CocoExport"]
 
@@ -64,6 +66,7 @@ class CocoExport(DatasetFormat):
                 "bbox": _bbox(table.visible_boxes[row]),
                 "iscrowd": 0,
             }
+            annotation |= _keypoints(frame, instance_id)
             if masks is not None:
                 annotation |= _amodal(table, row)
                 annotation["amodal_segmentation"] = amodal_segmentation(
@@ -107,7 +110,10 @@ class CocoExport(DatasetFormat):
             }
             return {"id": id_, "name": name, "supercategory": "", **schemes}
 
-        things = [listed(id_, name) for id_, name in categories.items()]
+        things = [
+            listed(id_, name) | (_PERSON if name == "person" else {})
+            for id_, name in categories.items()
+        ]
         # All records may be more than fits into memory: each list is read and written as it goes.
         for split in sorted(splits):
             table = {
@@ -146,6 +152,30 @@ def _amodal(table: ObjectTable, row: int) -> dict[str, Any]:
         "occlusion": float(1.0 - table.visible_share[row]),
         "truncation": float(table.truncated_share[row]),
     }
+
+
+_PERSON = {
+    "keypoints": [name.replace(" ", "_") for name in COCO_KEYPOINTS],
+    "skeleton": [list(pair) for pair in COCO_SKELETON],
+}
+
+
+def _keypoints(frame: Frame, instance_id: int) -> dict[str, Any]:
+    """Return COCO's keypoints of a person: x, y and 2 seen, 1 hidden, 0 0 0 out of view."""
+    if frame.states is None or instance_id not in frame.states.skeletons:
+        return {}
+    points = frame.keypoints(instance_id)
+    place = {name: number for number, name in enumerate(points.names)}
+    found: list[float] = []
+    for name in COCO_KEYPOINTS:
+        number = place[name]
+        if points.hidden_by[number] < 0:
+            found += [0, 0, 0]
+            continue
+        x, y = points.pixels[number].tolist()
+        # COCO counts from the corner of the picture's first pixel.
+        found += [round(x + 0.5, 2), round(y + 0.5, 2), 2 if points.visible[number] else 1]
+    return {"keypoints": found, "num_keypoints": sum(v > 0 for v in found[2::3])}
 
 
 def _bbox(box: NDArray[np.int32]) -> list[int]:

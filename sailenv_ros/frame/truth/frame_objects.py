@@ -14,9 +14,10 @@ from sailenv_ros.frame.truth.object_table import (
     ObjectTable,
     corner_keypoints,
 )
+from sailenv_ros.frame.truth.person_points import person_points
 from sailenv_ros.frame.truth.visible_parts import VisibleParts, visible_parts
 from sailenv_ros.types.camera import CameraIntrinsics
-from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.scene_info import InstanceColumns, SceneInfo
 
 __all__ = ["HIDDEN_BEHIND", "keypoints_of", "objects_of"]
 
@@ -51,7 +52,8 @@ def objects_of(frame: FrameData) -> ObjectTable:
     )
     world, linear, angular = _motion(frame, known.ids)
     camera = frame.camera.camera_from_world @ world
-    middle, half = 0.5 * (known.low_m + known.high_m), 0.5 * (known.high_m - known.low_m)
+    low, high = _boxes(frame, known)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
     own = middle[:, None] + half[:, None] * CORNER_SIGNS
     optical = _moved(camera, own)
     projected = frame.camera.intrinsics.project(optical)
@@ -76,7 +78,7 @@ def objects_of(frame: FrameData) -> ObjectTable:
         world_from_object=world,
         camera_from_object=camera,
         box_centres=_moved(world, middle[:, None])[:, 0],
-        box_sizes=known.high_m - known.low_m,
+        box_sizes=high - low,
         corners=_moved(world, own),
         corner_pixels=projected,
         corners_visible=_is_visible(frame, optical, projected),
@@ -105,17 +107,53 @@ def keypoints_of(frame: FrameData, table: ObjectTable, instance_id: int) -> Keyp
     """
     row = table.row(instance_id)
     info = _info(frame)
+    if frame.states is not None and instance_id in frame.states.skeletons:
+        own = frame.states.skeletons[instance_id]
+        return person_points(frame, instance_id, own.point_names, own.points)
     instance = next(one for one in info.instances if one.id == instance_id)
     points = instance.keypoints or corner_keypoints(instance.low_m, instance.high_m)
-    own = np.array([point.position_m for point in points])[None]
-    optical = _moved(table.camera_from_object[row : row + 1], own)
+    places = np.array([point.position_m for point in points])[None]
+    optical = _moved(table.camera_from_object[row : row + 1], places)
     pixels = frame.camera.intrinsics.project(optical)
+    visible = _is_visible(frame, optical, pixels)[0]
     return Keypoints(
         names=tuple(point.name for point in points),
-        world=_moved(table.world_from_object[row : row + 1], own)[0],
+        world=_moved(table.world_from_object[row : row + 1], places)[0],
         pixels=pixels[0],
-        visible=_is_visible(frame, optical, pixels)[0],
+        visible=visible,
+        hidden_by=_hidden_by(frame, pixels[0], visible),
     )
+
+
+def _hidden_by(
+    frame: FrameData, pixels: NDArray[np.float64], visible: NDArray[np.bool_]
+) -> NDArray[np.int64]:
+    """Return (K,): ids of what is shown where points are that are not seen; 0, -1 as `Keypoints`."""
+    lens = frame.camera.intrinsics
+    with np.errstate(invalid="ignore"):
+        u, v = np.rint(pixels[:, 0]), np.rint(pixels[:, 1])
+        inside = (u >= 0) & (u < lens.width) & (v >= 0) & (v < lens.height)
+    found = np.full(len(pixels), -1, np.int64)
+    if "instance" in frame.views:
+        at = v[inside].astype(np.intp), u[inside].astype(np.intp)
+        found[inside] = frame["instance"][at]
+    found[visible] = 0
+    return found
+
+
+def _boxes(
+    frame: FrameData, known: InstanceColumns
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return (N, 3) lowest and highest corners in their own frames, of what deforms as it is."""
+    states = frame.states
+    if states is None or not states.deformations:
+        return known.low_m, known.high_m
+    low, high = known.low_m.copy(), known.high_m.copy()
+    for id_, shape in states.deformations.items():
+        at = int(np.searchsorted(known.ids, id_))
+        if at < len(known.ids) and known.ids[at] == id_:
+            low[at], high[at] = shape.bounds * states.scales[states.row(id_)]
+    return low, high
 
 
 def _info(frame: FrameData) -> SceneInfo:

@@ -47,12 +47,15 @@ class Keypoints:
         Column and row in the picture [px]; NaN behind the camera.
     visible : (K,) bool
         True if it lies in the picture and nothing is seen in front of it.
+    hidden_by : (K,) int64
+        Id of the instance that hides it; 0 where nothing does, -1 where it is out of view.
     """
 
     names: tuple[str, ...]
     world: NDArray[np.float64]
     pixels: NDArray[np.float64]
     visible: NDArray[np.bool_]
+    hidden_by: NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -13,6 +13,7 @@ from sailenv_ros.scene.randomise.things.random_environment import RandomEnvironm
 from sailenv_ros.scene.randomise.things.random_light import RandomLight
 from sailenv_ros.scene.randomise.things.random_material import RandomMaterial
 from sailenv_ros.scene.randomise.things.random_object import RandomObject
+from sailenv_ros.scene.randomise.things.random_people import RandomPeople
 from sailenv_ros.scene.randomise.things.random_spawn import RandomSpawn
 
 __all__ = ["RandomThing"]
@@ -25,6 +26,7 @@ RandomThing: TypeAlias = Annotated[
     | RandomCamera
     | RandomDistractors
     | RandomSpawn
+    | RandomPeople
     | RandomBehaviour,
     Field(discriminator="type"),
 ]

@@ -1,0 +1,48 @@
+"""A person's joints and keypoints at one instant, in the world."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["COCO_KEYPOINTS", "COCO_SKELETON", "Skeleton"]
+
+_SIDED = ("eye", "ear", "shoulder", "elbow", "wrist", "hip", "knee", "ankle")
+
+COCO_KEYPOINTS: tuple[str, ...] = (
+    "nose",
+    *(f"{side} {name}" for name in _SIDED for side in ("left", "right")),
+)
+"""The 17 keypoints of COCO, in its order, as `Skeleton.point_names` has them."""
+
+COCO_SKELETON: tuple[tuple[int, int], ...] = (
+    (16, 14), (14, 12), (17, 15), (15, 13), (12, 13), (6, 12), (7, 13), (6, 7), (6, 8), (7, 9),
+    (8, 10), (9, 11), (2, 3), (1, 2), (1, 3), (2, 4), (3, 5), (4, 6), (5, 7),
+)  # fmt: skip
+"""Pairs of keypoints that lines join, counted from 1, as COCO's files have them."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Skeleton:
+    """Joints and keypoints of one instance.
+
+    Attributes
+    ----------
+    joint_names : (J,) tuple of str
+    parents : (J,) int64
+        Of joints; -1 for the root.
+    joints : (J, 3) float64
+        World frame [m].
+    point_names : (P,) tuple of str
+        `COCO_KEYPOINTS`.
+    points : (P, 3) float64
+        World frame [m].
+    """
+
+    joint_names: tuple[str, ...]
+    parents: NDArray[np.int64]
+    joints: NDArray[np.float64]
+    point_names: tuple[str, ...]
+    points: NDArray[np.float64]

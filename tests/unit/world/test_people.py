@@ -1,0 +1,269 @@
+"""People of the world: feet that stand, ways round furniture and each other, seats, truth."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.assets.categories import load_categories
+from sailenv_ros.behaviours import start_behaviour
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import Asset, BoxShape, Model, ModelPart
+from sailenv_ros.world.mover import Mover
+from sailenv_ros.world.person_body import PersonBody
+from sailenv_ros.world.placement import Placement
+from sailenv_ros.world.world import World
+from tests.support.stick_person import stick_person
+from tests.support.tiny_scenes import box_mesh, model_of
+
+CATEGORIES = load_categories()
+STICK = stick_person()
+FEET = tuple(STICK.rig.joint_of[f"foot.{side}"] for side in "LR") if STICK.rig else ()
+TOES = tuple(STICK.rig.joint_of[f"toe1-1.{side}"] for side in "LR") if STICK.rig else ()
+
+
+def box(name: str, size: tuple[float, float, float], category: str = "cube") -> Asset:
+    half = tuple(0.5 * side for side in size)
+    mesh = box_mesh(size)
+    lifted = type(mesh)(
+        positions=mesh.positions + np.float32([0.0, 0.0, half[2]]),
+        normals=mesh.normals,
+        uvs=mesh.uvs,
+        triangles=mesh.triangles,
+    )
+    return Asset(
+        name=name,
+        display_name=name,
+        category=category,
+        model=model_of(lifted),
+        collision=(BoxShape(half_extents_m=half, centre_m=(0.0, 0.0, half[2])),),
+    )
+
+
+def chair() -> Asset:
+    """A block 0.45 m high with a back; one sits towards +x."""
+    seat, back = box("seat", (0.5, 0.5, 0.45)), box("back", (0.08, 0.5, 0.9))
+    moved = back.model.parts[0].mesh
+    behind = type(moved)(
+        positions=moved.positions + np.float32([-0.25, 0.0, 0.0]),
+        normals=moved.normals,
+        uvs=moved.uvs,
+        triangles=moved.triangles,
+    )
+    look = seat.model.parts[0].material
+    return Asset(
+        name="chair",
+        display_name="chair",
+        category="chair",
+        model=Model(
+            name="chair",
+            parts=(seat.model.parts[0], ModelPart(mesh=behind, material=look)),
+        ),
+        collision=(
+            *seat.collision,
+            BoxShape(half_extents_m=(0.04, 0.25, 0.45), centre_m=(-0.25, 0.0, 0.45)),
+        ),
+    )
+
+
+def placed(name: str, asset: Asset, x: float, y: float, yaw: float = 0.0, **more: Any) -> Placement:
+    return Placement(
+        name=name,
+        asset=asset,
+        category_id=CATEGORIES.named(asset.category).id,
+        pose=Pose.from_rpy_deg((x, y, 0.0), (0.0, 0.0, yaw)),
+        **more,
+    )
+
+
+def person(name: str, x: float, y: float, kind: str = "", **parameters: Any) -> Placement:
+    behaviours = ()
+    if kind:
+        behaviours = (start_behaviour(kind, parameters, seed=3, object_name=name, place=0),)
+    return placed(name, STICK, x, y, behaviours=behaviours)
+
+
+def world_of(*placements: Placement) -> World:
+    ground = Placement(
+        name="ground",
+        asset=AssetLibrary().get("plane"),
+        category_id=CATEGORIES.named("plane").id,
+        pose=Pose((0.0, 0.0, 0.0)),
+        static=True,
+    )
+    return World(
+        scene="people",
+        placements=[ground, *placements],
+        movers=[Mover(name="mover", start=Pose(), track=None, controller="rigidbody")],
+        categories=CATEGORIES,
+    )
+
+
+def one(world: World, name: str) -> PersonBody:
+    found = next(body for body in world.bodies if body.placement.name == name)
+    assert isinstance(found, PersonBody)
+    return found
+
+
+def test_feet_do_not_slide_and_do_not_sink() -> None:
+    with_feet: list[np.ndarray] = []
+    world = world_of(person("anna", -1.5, 0.0), placed("block", box("b", (0.3, 0.3, 0.5)), 3, 3))
+    anna = one(world, "anna")
+    world.step(1)
+    assert anna.walk_to((1.5, 0.8))
+    while anna.activity == "walking":
+        joints = anna.skeleton().joints
+        with_feet.append(np.concatenate([joints[list(TOES)], joints[list(FEET)]]))
+        world.step(2)
+    feet = np.array(with_feet)
+    assert np.hypot(*(feet[-1, 2:].mean(axis=0)[:2] - [1.5, 0.8])) < 0.05
+    # While a toe is at its height on the floor its place does not change.
+    toes = feet[:, :2]
+    assert STICK.rig is not None
+    low = toes[..., 2] < STICK.rig.head("toe1-1.L")[2] + 0.0015
+    stays = low[1:] & low[:-1]
+    slides = np.linalg.norm(np.diff(toes, axis=0)[..., :2], axis=-1)
+    assert stays.mean() > 0.3
+    assert slides[stays].max() < 0.01
+    assert toes[..., 2].min() > STICK.rig.head("toe1-1.L")[2] - 0.005
+    world.close()
+
+
+def test_ways_lead_round_furniture() -> None:
+    wall = placed("wall", box("w", (0.2, 3.0, 1.0)), 0.0, 0.0, static=True)
+    world = world_of(person("anna", -1.5, 0.0), wall)
+    anna = one(world, "anna")
+    world.step(1)
+    assert anna.walk_to((1.5, 0.0))
+    nearest = 9.0
+    while anna.activity == "walking":
+        x, y = anna.pose().position_m[:2]
+        away = np.hypot(max(abs(x) - 0.1, 0.0), max(abs(y) - 1.5, 0.0))
+        nearest = min(nearest, float(away))
+        world.step(6)
+    assert np.hypot(anna.pose().position_m[0] - 1.5, anna.pose().position_m[1]) < 0.05
+    assert nearest > 0.18
+    assert anna.problem == ""
+    world.close()
+
+
+def test_people_do_not_walk_through_each_other() -> None:
+    world = world_of(
+        person("anna", -2.0, 0.0),
+        person("ben", 2.0, 0.05),
+        placed("far", box("b", (0.3, 0.3, 0.5)), 4, 4),
+    )
+    anna, ben = one(world, "anna"), one(world, "ben")
+    world.step(1)
+    assert anna.walk_to((2.0, 0.0))
+    assert ben.walk_to((-2.0, 0.0))
+    nearest = 9.0
+    for _ in range(600):
+        world.step(12)
+        between = np.subtract(anna.pose().position_m, ben.pose().position_m)
+        nearest = min(nearest, float(np.hypot(*between[:2])))
+        if anna.activity == ben.activity == "standing":
+            break
+    assert nearest > 0.3
+    assert anna.problem or np.hypot(anna.pose().position_m[0] - 2.0, 0.0) < 0.1
+    world.close()
+
+
+def test_one_sits_upon_a_seat_and_gets_up() -> None:
+    world = world_of(
+        person("anna", 1.5, 0.6),
+        placed("seat", chair(), 0.0, 0.0, 30.0, static=True),
+        placed("far", box("b", (0.3, 0.3, 0.5)), 4, 4),
+    )
+    anna = one(world, "anna")
+    world.step(1)
+    assert anna.seats() == ("seat",)
+    assert anna.sit_on("seat")
+    seen = []
+    for _ in range(400):
+        world.step(12)
+        seen.append(anna.activity)
+        if anna.activity == "seated":
+            break
+    assert list(dict.fromkeys(seen)) == ["walking", "sitting down", "seated"]
+    rig, joints = STICK.rig, anna.skeleton().joints
+    assert rig is not None
+    hips = joints[[rig.joint_of["upperleg01.L"], rig.joint_of["upperleg01.R"]]].mean(axis=0)
+    own = world.body(world.find("seat")).world_from_body()
+    on_seat = own[:3, :3].T @ (hips - own[:3, 3])
+    assert 0.46 < on_seat[2] < 0.60
+    assert -0.21 < on_seat[0] < 0.25
+    assert abs(on_seat[1]) < 0.1
+    assert anna.seats() == ("seat",)  # it is her own
+    anna.get_up()
+    for _ in range(60):
+        world.step(12)
+    assert anna.activity == "standing"
+    world.close()
+
+
+def test_the_same_seed_gives_the_same_bytes() -> None:
+    found = []
+    for _ in range(2):
+        world = world_of(
+            person("anna", -1.0, 0.0, "walk_around", pause=(0.1, 0.4)),
+            person("ben", 1.0, 1.0, "sit", sitting=(0.5, 1.0)),
+            placed("seat", chair(), 0.0, -2.0, 90.0, static=True),
+        )
+        world.step(1500)
+        states = world.states()
+        shapes = [shape.meshes[0].positions.tobytes() for shape in states.deformations.values()]
+        found.append((states.positions.tobytes(), *shapes))
+        world.close()
+    assert found[0] == found[1]
+
+
+def test_what_stands_still_of_a_person_is_the_same_bytes() -> None:
+    world = world_of(person("anna", 0.0, 0.0))
+    world.step(5)
+    first = next(iter(world.snapshot().deformations.values())).meshes[0].positions
+    world.step(30)
+    second = next(iter(world.snapshot().deformations.values())).meshes[0].positions
+    assert STICK.rig is not None
+    bones = STICK.rig.bones[0][:, 0]
+    legs = np.isin(bones, [*FEET, *TOES])
+    assert (first[legs] == second[legs]).all()
+    assert (first[~legs] != second[~legs]).any()  # it breathes
+    world.close()
+
+
+def test_limbs_push_what_stands_in_their_way() -> None:
+    ball = Placement(
+        name="ball",
+        asset=AssetLibrary().get("sphere"),
+        category_id=CATEGORIES.named("sphere").id,
+        pose=Pose((0.35, 0.0, 0.06)),
+        scale=(0.1, 0.1, 0.1),
+        mass_kg=0.3,
+    )
+    world = world_of(person("anna", -0.8, 0.0), ball)
+    anna = one(world, "anna")
+    world.step(1)
+    before = world.body(world.find("ball")).pose().position_m
+    anna._follow([(-0.8, 0.0), (1.2, 0.0)], None)
+    touched = set()
+    while anna.activity == "walking":
+        world.step(4)
+        for contact in world.contacts(0.05):
+            touched.add((contact.first, contact.second))
+    moved = np.subtract(world.body(world.find("ball")).pose().position_m, before)
+    assert np.hypot(*moved[:2]) > 0.02
+    assert touched
+    world.close()
+
+
+def test_behaviours_of_people_are_refused_for_things() -> None:
+    world = world_of(person("anna", 0.0, 0.0), placed("block", box("b", (0.3, 0.3, 0.5)), 3, 3))
+    block = world.body(world.find("block"))
+    with pytest.raises(InvalidRequest, match="a person for the behaviour 'walk_around'"):
+        block.attach(start_behaviour("walk_around", {}, seed=1, object_name="block", place=0))
+    world.close()
