@@ -23,7 +23,9 @@ _EDGE_PX = 512
 
 
 @lru_cache(maxsize=64)
-def cloth(colour: str, print_: str = "", second: str = "#f2efe6", fabric: str = "weave") -> Material:
+def cloth(
+    colour: str, print_: str = "", second: str = "#f2efe6", fabric: str = "weave"
+) -> Material:
     """Return cloth of a colour ``#rrggbb``, perhaps with a print in a second one.
 
     Parameters
@@ -84,26 +86,30 @@ def strands(colour: str, curls: float) -> Material:
 def _creases(fabric: str) -> Doubles:
     """Return (E, E) heights, 0 to 1: folds that run slantwise, and threads."""
     folds = ndimage.gaussian_filter(_noise(3), (34.0, 13.0), mode="wrap")
-    folds = folds / folds.std() + 0.5 * _scaled(ndimage.gaussian_filter(_noise(4), 9.0, mode="wrap"))
+    folds = folds / folds.std() + 0.5 * _scaled(
+        ndimage.gaussian_filter(_noise(4), 9.0, mode="wrap")
+    )
     rows, columns = np.mgrid[:_EDGE_PX, :_EDGE_PX]
     step = 2.0 * np.pi / (6.0 if fabric == "denim" else 4.0)
-    threads = np.sin(step * (rows + columns)) if fabric == "denim" else np.sin(
-        step * rows
-    ) * np.sin(step * columns)
+    threads = (
+        np.sin(step * (rows + columns))
+        if fabric == "denim"
+        else np.sin(step * rows) * np.sin(step * columns)
+    )
     height = 0.5 + 0.16 * folds + 0.012 * threads
-    return np.clip(height, 0.0, 1.0)
+    return np.asarray(np.clip(height, 0.0, 1.0), np.float64)
 
 
 def _print(name: str) -> Doubles:
     rows, columns = np.mgrid[:_EDGE_PX, :_EDGE_PX] / _EDGE_PX
     if name == "stripes":
-        return ((rows * 16.0) % 1.0 < 0.4).astype(np.float64)
+        return np.asarray((rows * 16.0) % 1.0 < 0.4, np.float64)
     if name == "checks":
         across, down = ((place * 12.0) % 1.0 < 0.5 for place in (columns, rows))
-        return 0.45 * across + 0.45 * down
+        return np.asarray(0.45 * across + 0.45 * down, np.float64)
     if name == "dots":
         u, v = (columns * 14.0) % 1.0 - 0.5, (rows * 14.0) % 1.0 - 0.5
-        return (np.hypot(u, v) < 0.22).astype(np.float64)
+        return np.asarray(np.hypot(u, v) < 0.22, np.float64)
     return np.zeros((_EDGE_PX, _EDGE_PX))
 
 

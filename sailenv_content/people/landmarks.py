@@ -87,10 +87,6 @@ class Landmarks:
         line = np.interp(around, _HAIRLINE_DEG, _HAIRLINE_M)
         ear = np.maximum(0.0, 0.030 - np.hypot(x - 0.030, z - 0.716)) * (np.abs(y) > 0.062)
         return np.where(z > 0.6, line - z + ear, 1.0)
-        rear = np.clip((0.02 - x) / 0.03, 0.0, 1.0)
-        line = share * front + (1.0 - share) * (rear * back + (1.0 - rear) * over_ear)
-        ear = np.maximum(0.0, 0.012 - np.hypot(x - 0.035, z - 0.722) + 0.02) * (side > 0.06)
-        return np.where(z > 0.6, line - z + ear, 1.0)
 
     def _joint(self, name: str) -> Doubles:
         return self._data.joint(self.base, self._data.bones[name]["head"])

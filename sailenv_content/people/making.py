@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_content.people.cloth import TILE_M, cloth, leather, strands
+from sailenv_content.people.cloth import strands
+from sailenv_content.people.dressing import PersonPart, Undressed, clothes
 from sailenv_content.people.figures import figure
-from sailenv_content.people.garments import GARMENTS, SOLE_M, GarmentKind
+from sailenv_content.people.garments import GARMENTS, SOLE_M
 from sailenv_content.people.hair import HAIRSTYLES, hair_pieces
 from sailenv_content.people.landmarks import Landmarks
-from sailenv_content.people.looks import PersonLook, Wear
+from sailenv_content.people.looks import PersonLook
 from sailenv_content.people.makehuman import BODY_VERTICES, BodyData
 from sailenv_content.people.painting import (
     HEAD_WINDOW,
@@ -24,12 +23,11 @@ from sailenv_content.people.painting import (
     eye_uvs,
     skin_picture,
 )
-from sailenv_content.people.pieces import Cut, clipped, smoothed, vertex_normals
+from sailenv_content.people.pieces import clipped, vertex_normals
 from sailenv_content.people.rigging import (
     joint_names,
     joint_parents,
     joint_places,
-    strongest,
     vertex_weights,
 )
 from sailenv_ros.assets.simplification import fewer_triangles
@@ -58,27 +56,7 @@ SKIN_ERROR = 0.0016
 HIDDEN_M = 0.035
 """How far inside the edge of a garment skin is left out [m]: from there nobody sees it."""
 
-UNDER_M = 0.06
-"""The same of garments under others [m]."""
-
-LAYER_M = 0.005
-"""By how much more a garment that is worn over another one is off the body [m]."""
-
 HEAD_PX, SKIN_PX = 1024, 512
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class _Part:
-    """Triangles of one material with their weights; `label` is empty for the body's own."""
-
-    label: str
-    positions: Doubles
-    normals: Doubles
-    uvs: Doubles
-    triangles: Indices
-    material: Material
-    bones: NDArray[np.uint16]
-    weights: NDArray[np.float32]
 
 
 def make_person(name: str, look: PersonLook, data: BodyData, *, labelled: bool = False) -> Asset:
@@ -138,7 +116,7 @@ def make_person(name: str, look: PersonLook, data: BodyData, *, labelled: bool =
     )
 
 
-def _mesh(part: _Part) -> Mesh:
+def _mesh(part: PersonPart) -> Mesh:
     return Mesh(
         positions=part.positions.astype(np.float32),
         normals=part.normals.astype(np.float32),
@@ -148,7 +126,7 @@ def _mesh(part: _Part) -> Mesh:
 
 
 class _Maker:
-    """What is made of one person."""
+    """The parts of one person."""
 
     def __init__(self, look: PersonLook, data: BodyData) -> None:
         self._look, self._data = look, data
@@ -157,12 +135,17 @@ class _Maker:
         self.vertices[:, 2] += SOLE_M
         self._bones, self._weights = vertex_weights(data)
         self._skin_normals = vertex_normals(self.vertices, data.groups["body"].triangles)
-        self._worn = [(GARMENTS[wear.garment], wear) for wear in look.wears]
-        self._fields = [kind.field(self._marks) for kind, _ in self._worn]
+        self._person = Undressed(data, self._marks, self.vertices)
 
-    def parts(self) -> list[_Part]:
+    def parts(self) -> list[PersonPart]:
         """Return all that is drawn."""
-        return [*self._skin(), *self._eyes(), self._lashes(), *self._hair(), *self._clothes()]
+        return [
+            *self._skin(),
+            *self._eyes(),
+            self._lashes(),
+            *self._hair(),
+            *clothes(self._person, self._look.wears),
+        ]
 
     def points(self) -> tuple[RigPoint, ...]:
         """Return COCO's keypoints."""
@@ -203,12 +186,14 @@ class _Maker:
         found: Doubles = self.vertices[int(near.argmax())]
         return found
 
-    def _skin(self) -> list[_Part]:
+    def _skin(self) -> list[PersonPart]:
         data, look = self._data, self._look
         triangles, uv_triangles, vertices, uvs = _skin_triangles(data)
         hidden = np.zeros(len(data.base), bool)
-        for field, (kind, _) in zip(self._fields, self._worn, strict=True):
-            hidden |= field < (-0.25 if kind.label == "shoes" else -1.0) * HIDDEN_M
+        for wear in look.wears:
+            kind = GARMENTS[wear.garment]
+            margin = (0.25 if kind.label == "shoes" else 1.0) * HIDDEN_M
+            hidden |= kind.field(self._marks) < -margin
         seen = ~hidden[vertices[triangles]].all(axis=1)
         is_head = (uvs[triangles][..., 0] > HEAD_WINDOW[0]).all(axis=1)
         is_head &= (uvs[triangles][..., 1] > HEAD_WINDOW[1]).all(axis=1)
@@ -238,7 +223,7 @@ class _Maker:
             )
             at = vertices[used]
             found.append(
-                _Part(
+                PersonPart(
                     label="",
                     positions=self.vertices[at],
                     normals=self._skin_normals[at],
@@ -251,7 +236,7 @@ class _Maker:
             )
         return found
 
-    def _eyes(self) -> list[_Part]:
+    def _eyes(self) -> list[PersonPart]:
         data = self._data
         material = Material(
             name="eye",
@@ -264,10 +249,10 @@ class _Maker:
             group = data.groups[f"helper-{letter}-eye"]
             cut = clipped(group.triangles, group.uv_triangles, np.full(len(data.base), -1.0))
             uvs = eye_uvs(cut.mixed(self.vertices))
-            found.append(self._of_cut("", cut, uvs, material))
+            found.append(self._person.part_of("", cut, uvs, material))
         return found
 
-    def _lashes(self) -> _Part:
+    def _lashes(self) -> PersonPart:
         data = self._data
         names = [f"helper-{side}-eyelashes-{k}" for side in "lr" for k in (1, 2)]
         cut = clipped(
@@ -278,9 +263,9 @@ class _Maker:
         material = Material(
             name="lashes", roughness=0.7, base_colour=(0.02, 0.015, 0.012, 1.0), double_sided=True
         )
-        return self._of_cut("", cut, cut.mixed_uvs(data.uvs), material)
+        return self._person.part_of("", cut, cut.mixed_uvs(data.uvs), material)
 
-    def _hair(self) -> list[_Part]:
+    def _hair(self) -> list[PersonPart]:
         look = self._look
         style = HAIRSTYLES.get(look.hair)
         if style is None:
@@ -288,14 +273,12 @@ class _Maker:
         material = strands(look.hair_colour, look.curls)
         head = joint_names(self._data).index("head")
         found = []
-        for piece in hair_pieces(
-            self._data, self._marks, style, self.vertices, self._skin_normals
-        ):
+        for piece in hair_pieces(self._data, self._marks, style, self.vertices, self._skin_normals):
             count = len(piece.positions)
             weights = np.zeros((count, 4), np.float32)
             weights[:, 0] = 1.0
             found.append(
-                _Part(
+                PersonPart(
                     label="hair",
                     positions=piece.positions,
                     normals=piece.normals,
@@ -307,97 +290,6 @@ class _Maker:
                 )
             )
         return found
-
-    def _clothes(self) -> list[_Part]:
-        found = []
-        for place, (kind, wear) in enumerate(self._worn):
-            field = self._fields[place]
-            # What another garment, worn over it, hides.
-            over = [f for f in self._fields[place + 1 :]] if kind.label != "shoes" else []
-            beneath = np.maximum.reduce([-UNDER_M - f for f in over]) if over else None
-            found.append(self._garment(kind, wear, place, field, beneath))
-        return found
-
-    def _garment(
-        self,
-        kind: GarmentKind,
-        wear: Wear,
-        place: int,
-        field: Doubles,
-        beneath: Doubles | None,
-    ) -> _Part:
-        data = self._data
-        group = data.groups[kind.group]
-        if beneath is not None:
-            field = np.maximum(field, beneath)
-        cut = clipped(group.triangles, group.uv_triangles, field)
-        moved = self._off_body(kind, group.triangles, place)
-        size = TILE_M * (0.5 if kind.label == "shoes" else 1.0)
-        uvs = cut.mixed_uvs(data.uvs) * (16.0 / size)
-        if kind.fabric == "leather":
-            material = leather(wear.colour)
-        else:
-            material = cloth(wear.colour, wear.print, wear.second, kind.fabric)
-        positions = cut.mixed(moved)
-        normals = cut.mixed(vertex_normals(moved, group.triangles))
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
-        return self._of_cut(kind.label, cut, uvs, material, positions, normals)
-
-    def _off_body(self, kind: GarmentKind, triangles: Indices, place: int) -> Doubles:
-        """Return the mesh's vertices where a garment has them."""
-        own = self.vertices
-        size = float(own[:BODY_VERTICES, 2].max()) / 1.68
-        normals = vertex_normals(own, triangles)
-        ease = np.full(len(own), kind.ease_m + LAYER_M * place)
-        if kind.flare_m:
-            height = self._marks.height_m
-            edge = height[self._fields[place] < 0.0].min(initial=0.0)
-            low = np.clip(1.0 - (height - edge) / 0.22, 0.0, 1.0)
-            ease += kind.flare_m * np.where(self._marks.is_arm, 0.0, low)
-        wrist = np.clip((self._marks.arm_m - 0.25) / 0.2, 0.0, 1.0)
-        ease *= 1.0 - 0.5 * wrist
-        moved = own
-        if kind.bridging:
-            raised = smoothed(own, triangles, kind.bridging) - own
-            outward = np.einsum("vk,vk->v", raised, normals)
-            # Not at the shoulders, which would look padded.
-            y, z = self._marks.base[:, 1], self._marks.base[:, 2]
-            beside = np.clip((np.abs(y) - 0.09) / 0.06, 0.0, 1.0) * (z > 0.36)
-            share = np.where(self._marks.is_arm, 0.15, 1.0 - 0.85 * beside)
-            ease = ease + share * np.clip(outward, 0.0, 0.05)
-        moved = own + size * ease[:, None] * normals
-        if kind.label == "shoes":
-            low = np.clip((0.045 - (own[:, 2] - SOLE_M) / size) / 0.04, 0.0, 1.0)
-            moved = moved + size * 0.004 * low[:, None] * normals * [1.0, 1.0, 0.0]
-            moved[:, 2] = (1.0 - low) * moved[:, 2] + low * 0.0
-            moved[:, 2] = np.maximum(moved[:, 2], 0.0)
-        return moved
-
-    def _of_cut(
-        self,
-        label: str,
-        cut: Cut,
-        uvs: Doubles,
-        material: Material,
-        positions: Doubles | None = None,
-        normals: Doubles | None = None,
-    ) -> _Part:
-        if positions is None:
-            positions = cut.mixed(self.vertices)
-        if normals is None:
-            joined = np.zeros_like(self.vertices)
-            np.add.at(joined, cut.first, 0.0)
-            whole = vertex_normals(self.vertices, cut.first[cut.triangles])
-            normals = whole[cut.first]
-        bones, weights = self._mixed_weights(cut)
-        return _Part(label, positions, normals, uvs, cut.triangles, material, bones, weights)
-
-    def _mixed_weights(self, cut: Cut) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
-        dense = np.zeros((len(cut.first), len(joint_names(self._data))))
-        rows = np.arange(len(dense))[:, None]
-        for corner, share in ((cut.first, 1.0 - cut.share), (cut.second, cut.share)):
-            np.add.at(dense, (rows, self._bones[corner]), share[:, None] * self._weights[corner])
-        return strongest(dense)
 
 
 _CATEGORIES = {"shoes": "shoe"}
@@ -432,8 +324,3 @@ def _skin_triangles(data: BodyData) -> tuple[Indices, Indices, Indices, Doubles]
     positions = data.base[unique[:, 0]].copy()
     fewer = fewer_triangles(positions, triangles, SKIN_TRIANGLES, max_error=SKIN_ERROR)
     return fewer, fewer, unique[:, 0], data.uvs[unique[:, 1]]
-
-
-def labels_of(parts: Sequence[AssetPart]) -> tuple[str, ...]:
-    """Return the names of parts."""
-    return tuple(part.name for part in parts)

@@ -102,7 +102,7 @@ def eye_uvs(positions: Doubles) -> Doubles:
     towards = positions - centre
     towards /= np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-9)
     away = np.maximum(1.0 + towards[:, 0], 0.2)
-    return 0.5 + 0.25 * np.stack([towards[:, 1], towards[:, 2]], axis=1) / away[:, None] * 2.0
+    return np.asarray(0.5 + 0.5 * towards[:, 1:] / away[:, None], np.float64)
 
 
 def eye_picture(iris: Colour, side: int = 128) -> Texture:
@@ -183,9 +183,7 @@ def _positions(
     uvs = (data.uvs[uv_triangles] - [left, low]) / [right - left, high - low]
     within = ((uvs > -0.05) & (uvs < 1.05)).all(axis=(1, 2))
     places = np.stack([uvs[..., 0], 1.0 - uvs[..., 1]], axis=-1)[within] * side
-    owner, weights = cover_texels(
-        np.ascontiguousarray(places, np.float32), side, _REACH_TEXELS
-    )
+    owner, weights = cover_texels(np.ascontiguousarray(places, np.float32), side, _REACH_TEXELS)
     there = owner >= 0
     corners = triangles[within][owner[there]]
     table = data.base if values is None else values

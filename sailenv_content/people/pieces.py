@@ -111,7 +111,9 @@ def vertex_normals(vertices: Doubles, triangles: Indices) -> Doubles:
     for k in range(3):
         np.add.at(normals, triangles[:, k], areas)
     length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0)
+    return np.asarray(
+        np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0), np.float64
+    )
 
 
 def smoothed(vertices: Doubles, triangles: Indices, rounds: int) -> Doubles:

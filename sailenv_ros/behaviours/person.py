@@ -25,7 +25,7 @@ class Person(Protocol):
 
     @property
     def activity(self) -> Activity:
-        """What it does now."""
+        """Activity now."""
 
     def random_place(self, rng: np.random.Generator) -> tuple[float, float] | None:
         """Return a free place that it can reach [m]; None if there is none."""

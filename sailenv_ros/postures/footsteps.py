@@ -31,6 +31,10 @@ class FootPrint:
     y: float
     yaw: float
 
+    def scaled(self, factor: float) -> FootPrint:
+        """Return it in lengths that are so many times as large."""
+        return FootPrint(self.x * factor, self.y * factor, self.yaw)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stride:
@@ -80,6 +84,21 @@ class Moment:
     yaw: float
     ahead_m: float
     before_m: float = 0.0
+
+    def scaled(self, factor: float) -> Moment:
+        """Return it in lengths that are so many times as large."""
+        if factor == 1.0:
+            return self
+        left, right = (place.scaled(factor) for place in self.feet)
+        return replace(
+            self,
+            feet=(left, right),
+            goal=None if self.goal is None else self.goal.scaled(factor),
+            x=self.x * factor,
+            y=self.y * factor,
+            ahead_m=self.ahead_m * factor,
+            before_m=self.before_m * factor,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,9 +196,7 @@ def way_to_turn(feet: tuple[FootPrint, FootPrint], yaw: float, stride: Stride) -
     return Way(start=feet, prints=tuple(prints), step_s=0.8 * stride.step_s)
 
 
-def way_along(
-    feet: tuple[FootPrint, FootPrint], corners: ArrayLike, stride: Stride
-) -> Way:
+def way_along(feet: tuple[FootPrint, FootPrint], corners: ArrayLike, stride: Stride) -> Way:
     """Return steps along a line from where the feet stand, with feet side by side at its end.
 
     Parameters

@@ -76,9 +76,7 @@ def turn_about(axis: str, degrees: float) -> Doubles:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def aligned(
-    rest: Doubles, rest_pole: Doubles, direction: Doubles, pole: Doubles
-) -> Doubles:
+def aligned(rest: Doubles, rest_pole: Doubles, direction: Doubles, pole: Doubles) -> Doubles:
     """Return the rotation that takes one direction to another, and its pole next to a pole."""
     return _frame(direction, pole) @ _frame(rest, rest_pole).T
 

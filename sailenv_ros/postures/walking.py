@@ -36,14 +36,24 @@ _TOE_OFF_DEG, _HEEL_STRIKE_DEG = 26.0, 14.0
 
 
 def standing_posture(
-    rig: Rig, moment: Moment, time_s: float, *, seed: int = 0, look_deg: tuple[float, float] = (0, 0)
+    rig: Rig,
+    moment: Moment,
+    time_s: float,
+    *,
+    seed: int = 0,
+    look_deg: tuple[float, float] = (0, 0),
 ) -> Posture:
     """Return the posture of a body that stands; see `walking_posture`."""
     return walking_posture(rig, moment, time_s, seed=seed, look_deg=look_deg)
 
 
 def walking_posture(
-    rig: Rig, moment: Moment, time_s: float, *, seed: int = 0, look_deg: tuple[float, float] = (0, 0)
+    rig: Rig,
+    moment: Moment,
+    time_s: float,
+    *,
+    seed: int = 0,
+    look_deg: tuple[float, float] = (0, 0),
 ) -> Posture:
     """Return the posture of a body on its way, in the frame of the body there.
 
@@ -156,7 +166,7 @@ def _swinging_foot(
 
 def _within_reach(figure: Figure, foot: Foot, place: FootPrint, hip: Doubles) -> Foot:
     """Return a foot whose heel rises as far as its leg needs to reach it."""
-    ankle, turn = foot
+    ankle, _ = foot
     most = 0.9985 * figure.leg_m
     if float(np.linalg.norm(ankle - hip)) <= most or ankle[2] > figure.ankle_m + 1e-3:
         return foot

@@ -75,8 +75,9 @@ class Rig:
             raise AssetError("rig", "a bone is not among its joints")
         if any(not 0 <= point.joint < count for point in self.points):
             raise AssetError("rig", "a point is not on one of its joints")
-        for array in (self.parents, self.heads, *self.bones, *self.weights):
-            array.flags.writeable = False
+        self.parents.flags.writeable = self.heads.flags.writeable = False
+        for bones, weights in zip(self.bones, self.weights, strict=True):
+            bones.flags.writeable = weights.flags.writeable = False
 
     @cached_property
     def joint_of(self) -> dict[str, int]:

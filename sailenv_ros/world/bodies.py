@@ -6,7 +6,7 @@ in which the model's vertices stand.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, TypeAlias
 
@@ -89,6 +89,11 @@ class Body:
     def bullet_id(self) -> int:
         """PyBullet's number of this body."""
         return self._id
+
+    @property
+    def limb_ids(self) -> Sequence[int]:
+        """PyBullet's numbers of what else of it is in the engine."""
+        return ()
 
     @property
     def link(self) -> int:

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest, NameTaken, PhysicsError
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.instance_states import InstanceStates
-from sailenv_ros.types.skeleton import Skeleton
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
@@ -22,7 +21,7 @@ from sailenv_ros.world.instance_ids import InstanceIds
 from sailenv_ros.world.joint_table import JointTable
 from sailenv_ros.world.jointed_bodies import make_bodies, make_body
 from sailenv_ros.world.labelled_pieces import LabelledPiece, find_piece, pieces_of, states_of
-from sailenv_ros.world.person_body import PersonBody
+from sailenv_ros.world.person_body import deformations_of, skeletons_of
 from sailenv_ros.world.placement import Placement
 
 __all__ = ["BodyTable"]
@@ -176,31 +175,12 @@ class BodyTable:
         self, world_from_body: NDArray[np.float64], deformations: Mapping[int, Deformation]
     ) -> InstanceStates:
         """Return where all pieces are and how they move, at poses (N, 4, 4) that were just read."""
-        return states_of(
-            self.pieces, world_from_body, self.histories(), deformations, self._skeletons()
-        )
-
-    def _skeletons(self) -> Mapping[int, Skeleton]:
-        return {
-            body_id: body.skeleton()
-            for body_id, body in self._bodies.items()
-            if isinstance(body, PersonBody)
-        }
+        skeletons = skeletons_of(self._bodies)
+        return states_of(self.pieces, world_from_body, self.histories(), deformations, skeletons)
 
     def deformations(self) -> Mapping[int, Deformation]:
         """Return the vertices of the pieces that deform, by their ids."""
-        shapes = {
-            body_id: body.deformation()
-            for body_id, body in self._bodies.items()
-            if isinstance(body, PersonBody)
-        }
-        if not shapes:
-            return {}
-        return {
-            piece.id: shapes[piece.body_id].only(piece.meshes)
-            for piece in self.pieces
-            if piece.body_id in shapes
-        }
+        return deformations_of(self._bodies, self.pieces)
 
     def histories(self) -> NDArray[np.int64]:
         """Return (N,) numbers; a piece's past before its number changed has been cut off."""

@@ -1,4 +1,4 @@
-"""What people know of the world around them: free places, ways, seats, and each other.
+"""The world around people as they know it: free places, ways, seats, and each other.
 
 Bodies in, places and ways out. A map of free space is made when a way is wanted and what stands
 around has moved by more than a hand's breadth since the last one.
@@ -42,7 +42,7 @@ class Crowd:
     Parameters
     ----------
     bodies : callable
-        Returns the bodies that are no people.
+        Returns all bodies.
     others : callable
         Returns the discs of movers.
     """
@@ -52,12 +52,16 @@ class Crowd:
         bodies: Callable[[], Iterable[Body]],
         others: Callable[[], Iterable[Disc]],
     ) -> None:
-        self._bodies, self._others = bodies, others
+        self._all, self._others = bodies, others
         self._key: bytes = b""
         self._maps: dict[BodySize, FreeSpace] = {}
         self._seats: tuple[Seat, ...] | None = None
         self.people: dict[str, Disc] = {}
         self.taken: dict[str, tuple[float, float]] = {}
+
+    def _bodies(self) -> list[Body]:
+        """Return the bodies that are no people."""
+        return [body for body in self._all() if body.placement.asset.rig is None]
 
     def discs(self, without: str) -> list[Disc]:
         """Return what others take: people but one, and movers."""
@@ -75,12 +79,29 @@ class Crowd:
         """Return the body of that name, if there is one."""
         return next((body for body in self._bodies() if body.placement.name == name), None)
 
+    def middle(self, name: str) -> Doubles | None:
+        """Return (3,): the middle of an object in the world [m]; None if there is none."""
+        body = self.body(name)
+        return None if body is None else _place_in(body, 0.5)
+
+    def before(self, name: str, away_m: float) -> tuple[Place, float] | None:
+        """Return a place before the front of an object, and the way to it from there [rad]."""
+        body = self.body(name)
+        if body is None:
+            return None
+        middle, front = _place_in(body, 0.5), _place_in(body, 1.0)
+        out = front[:2] - middle[:2]
+        out /= max(float(np.linalg.norm(out)), 1e-6)
+        x, y = (front[:2] + away_m * out).tolist()
+        return (x, y), float(np.arctan2(-out[1], -out[0]))
+
     def things(self) -> tuple[str, ...]:
         """Return the names of furniture."""
         return tuple(
             body.placement.name
             for body in self._bodies()
-            if body.placement.asset.category not in ROOM_PARTS and body.collides
+            if body.placement.asset.category not in ROOM_PARTS
+            and body.collides
             and float(np.ptp(body.placement.asset.model.bounds()[:, 2])) > 0.3
         )
 
@@ -92,9 +113,7 @@ class Crowd:
             self._maps[size] = map_free_space(solids, size)
         return self._maps[size]
 
-    def random_place(
-        self, size: BodySize, start: Place, rng: np.random.Generator
-    ) -> Place | None:
+    def random_place(self, size: BodySize, start: Place, rng: np.random.Generator) -> Place | None:
         """Return a free place that can be reached; None if there is none."""
         space = self.free_space(size)
         cell = self._nearest(space, start)
@@ -172,6 +191,16 @@ def body_size(height_m: float, floor_m: float) -> BodySize:
         floor_m=round(floor_m, 3),
         step_m=0.05,
     )
+
+
+def _place_in(body: Body, share: float) -> Doubles:
+    """Return a place of a body's box in the world: from its back, 0, to its front, 1 [m]."""
+    low, high = body.placement.asset.model.bounds() * np.asarray(body.placement.scale)
+    own = 0.5 * (low + high)
+    own[0] = low[0] + share * (high[0] - low[0])
+    matrix = body.world_from_body()
+    place: Doubles = matrix[:3, :3] @ own + matrix[:3, 3]
+    return place
 
 
 def _solids(body: Body) -> Iterable[Solid]:

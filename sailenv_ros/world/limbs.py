@@ -73,11 +73,13 @@ class Limbs:
         self._wake_touched()
 
     def _wake_touched(self) -> None:
-        """Wake what sleeps where a limb is now: the engine does not do it for what it does not move."""
+        """Wake what sleeps where a limb is now: the engine does not."""
         client = self._client
         found: set[int] = set()
         for body in self.ids:
-            found.update(other for other, _ in client.getOverlappingObjects(*client.getAABB(body)) or ())
+            found.update(
+                other for other, _ in client.getOverlappingObjects(*client.getAABB(body)) or ()
+            )
         for other in sorted(found.difference(self.ids)):
             if client.getDynamicsInfo(other, LINK_OF_BASE)[0]:
                 wake(client, other)

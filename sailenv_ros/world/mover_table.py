@@ -5,7 +5,7 @@ Names and commands in, poses of movers out, step by step.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from sailenv_ros.errors import UnknownName
@@ -20,6 +20,9 @@ __all__ = ["MoverTable"]
 
 Piece = tuple[int, int]
 """The engine's number of a body, and that of its link."""
+
+ROOM_M = 0.3
+"""Radius of what a mover takes upon the floor [m]."""
 
 
 class MoverTable:
@@ -73,6 +76,12 @@ class MoverTable:
         proxies = {(proxy.bullet_id, LINK_OF_BASE): name for name, proxy in self._proxies.items()}
         bodies = {(body.bullet_id, LINK_OF_BASE): body.placement.name for body in self.bodies}
         return {**proxies, **bodies}
+
+    def places(self, time_ns: int) -> Iterator[tuple[float, float, float]]:
+        """Yield what those take upon the floor that others bump into: x, y, radius [m]."""
+        for name in sorted(set(self.pieces.values())):
+            x, y, _ = self[name].pose_at(time_ns).position_m
+            yield x, y, ROOM_M
 
     # -- steps -----------------------------------------------------------------------------
 

@@ -27,7 +27,7 @@ LOWEST_M, HIGHEST_M = 0.30, 0.64
 
 _STEP_M = 0.02
 _BACK_M = 0.10
-"""What rises above the seat by more is its back [m]."""
+"""Height above the seat from which something is its back [m]."""
 
 _ABOVE_M = 3.0
 

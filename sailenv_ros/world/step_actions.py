@@ -22,6 +22,7 @@ from sailenv_ros.behaviours import (
 from sailenv_ros.world import actuation
 from sailenv_ros.world.bodies import Body, FrustumPlanes
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
+from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.person_body import PersonBody
 
 __all__ = ["StepActions"]
@@ -47,10 +48,16 @@ class StepActions:
         while this is used.
     frustum_planes : callable
         As of `World`.
+    crowd : Crowd
+        What people among them know of the world.
     """
 
     def __init__(
-        self, client: BulletClient, bodies: Iterable[Body], frustum_planes: FrustumPlanes
+        self,
+        client: BulletClient,
+        bodies: Iterable[Body],
+        frustum_planes: FrustumPlanes,
+        crowd: Crowd,
     ) -> None:
         self._client = client
         self._frustum_planes = frustum_planes
@@ -58,6 +65,8 @@ class StepActions:
         driven = ((body, body.forces()) for body in acting)
         self._driven = [(body, forces) for body, forces in driven if forces]
         self._people = [body for body in acting if isinstance(body, PersonBody)]
+        for person in self._people:
+            person.walker.crowd = crowd
         self._floating = [body for body in acting if body.floats]
         self._lifts = [tuple(-body.mass_kg * g for g in client.gravity) for body in self._floating]
         self._is_wall: dict[tuple[int, int], bool] = {}

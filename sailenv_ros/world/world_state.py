@@ -20,22 +20,17 @@ from sailenv_ros.world.body_table import BodyTable
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient, sim_time_ns
 from sailenv_ros.world.contact_log import ContactLog
 from sailenv_ros.world.contents_maker import ContentsMaker
-from sailenv_ros.world.crowd import Crowd, Disc
+from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.first_states import FirstStates
 from sailenv_ros.world.inactive_objects import InactiveObjects
 from sailenv_ros.world.look_at_solver import LookAtSolver
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.mover_table import MoverTable
 from sailenv_ros.world.object_state import object_state
-from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.step_actions import StepActions
 
 __all__ = ["WorldState"]
-
-MOVER_RADIUS_M = 0.3
-"""Distance that people keep from movers [m]."""
-
 SOLVER_RESIDUAL = 1e-5
 """Sum of the squared changes of velocities at which the engine's solver ends [m²/s²]; with ten
 times as much, cutlery on a plate never comes to rest."""
@@ -112,7 +107,7 @@ class WorldState:
             self._bodies.others = lambda: self._stands.bodies
             begin_at_rest(self._client, self.bodies, settled=settled)
             self._stands.enter()
-            self._crowd = Crowd(self._unmoved_bodies, self._mover_discs)
+            self._crowd = Crowd(lambda: self._bodies, lambda: self._stands.places(self.sim_time_ns))
             self._first = FirstStates(self._bodies)
         except BaseException:
             self.close()
@@ -143,10 +138,7 @@ class WorldState:
     def step(self, count: int = 1) -> None:
         """Advance by so many steps of 1/240 s."""
         pushed = (*self._bodies, *self._stands.bodies)
-        for person in self._bodies:
-            if isinstance(person, PersonBody):
-                person.crowd = self._crowd
-        actions = StepActions(self._client, pushed, self.frustum_planes)
+        actions = StepActions(self._client, pushed, self.frustum_planes, self._crowd)
         for _ in range(count):
             actions.act(self._step / STEPS_PER_SECOND)
             self._stands.before_step(self.sim_time_ns)
@@ -317,9 +309,11 @@ class WorldState:
         The first question hears of the last step alone: each step is kept only after it.
         """
         ids = {(body.bullet_id, body.link): id_ for id_, body in self._bodies.items()}
-        for id_, body in self._bodies.items():
-            if isinstance(body, PersonBody):
-                ids |= {(limb, LINK_OF_BASE): id_ for limb in body.limb_ids}
+        ids |= {
+            (limb, LINK_OF_BASE): id_
+            for id_, body in self._bodies.items()
+            for limb in body.limb_ids
+        }
         count = max(1, round(seconds * STEPS_PER_SECOND))
         return self._contact_log.contacts(self._step, count, ids, self._stands.pieces)
 
@@ -338,16 +332,6 @@ class WorldState:
         self._client.close()
 
     # -- inside ----------------------------------------------------------------------------
-
-    def _unmoved_bodies(self) -> Iterable[Body]:
-        """Return the bodies that are no people."""
-        return [body for body in self._bodies if not isinstance(body, PersonBody)]
-
-    def _mover_discs(self) -> Iterable[Disc]:
-        """Return where movers are that are driven, or are bodies."""
-        for name in set(self._stands.pieces.values()):
-            x, y, _ = self._stands[name].pose_at(self.sim_time_ns).position_m
-            yield x, y, MOVER_RADIUS_M
 
     def _configure(self) -> None:
         client = self._client

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailenv_ros.types.model import Asset, CylinderShape, Mesh, Model, ModelPart
-from sailenv_ros.types.model import Material
+from sailenv_ros.types.model import Asset, CylinderShape, Material, Mesh, Model, ModelPart
 from sailenv_ros.types.rig import Rig, RigPoint
 from sailenv_ros.types.skeleton import COCO_KEYPOINTS
 from tests.support.tiny_scenes import box_mesh

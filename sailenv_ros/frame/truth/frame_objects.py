@@ -128,7 +128,7 @@ def keypoints_of(frame: FrameData, table: ObjectTable, instance_id: int) -> Keyp
 def _hidden_by(
     frame: FrameData, pixels: NDArray[np.float64], visible: NDArray[np.bool_]
 ) -> NDArray[np.int64]:
-    """Return (K,): ids of what is shown where points are that are not seen; 0, -1 as `Keypoints`."""
+    """Return (K,): ids of what hides points that are not seen; 0 and -1 as `Keypoints` says."""
     lens = frame.camera.intrinsics
     with np.errstate(invalid="ignore"):
         u, v = np.rint(pixels[:, 0]), np.rint(pixels[:, 1])

@@ -77,6 +77,4 @@ def person_points(
         seen = before >= depths[inside] - flesh
         visible[inside] = seen
         hidden_by[inside] = np.where(seen, 0, shown)
-    return Keypoints(
-        names=names, world=world, pixels=pixels, visible=visible, hidden_by=hidden_by
-    )
+    return Keypoints(names=names, world=world, pixels=pixels, visible=visible, hidden_by=hidden_by)

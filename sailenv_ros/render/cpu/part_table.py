@@ -151,7 +151,7 @@ class PartTable:
         self._keys = keys
         charts, self._baked_poses = chart_table(contents)
         self._scales = np.array([drawn.scale for drawn in contents.instances]).reshape(-1, 3)
-        models: dict[tuple[int, int], _ModelParts] = {}
+        models: dict[tuple[int, int, int], _ModelParts] = {}
         casting_of: dict[tuple[int, tuple[float, ...]], bool] = {}
         shown: list[tuple[_ModelParts, int, bool]] = []
         is_new = False

@@ -114,8 +114,8 @@ def test_feet_do_not_slide_and_do_not_sink() -> None:
     world = world_of(person("anna", -1.5, 0.0), placed("block", box("b", (0.3, 0.3, 0.5)), 3, 3))
     anna = one(world, "anna")
     world.step(1)
-    assert anna.walk_to((1.5, 0.8))
-    while anna.activity == "walking":
+    assert anna.walker.walk_to((1.5, 0.8))
+    while anna.walker.activity == "walking":
         joints = anna.skeleton().joints
         with_feet.append(np.concatenate([joints[list(TOES)], joints[list(FEET)]]))
         world.step(2)
@@ -138,16 +138,16 @@ def test_ways_lead_round_furniture() -> None:
     world = world_of(person("anna", -1.5, 0.0), wall)
     anna = one(world, "anna")
     world.step(1)
-    assert anna.walk_to((1.5, 0.0))
+    assert anna.walker.walk_to((1.5, 0.0))
     nearest = 9.0
-    while anna.activity == "walking":
+    while anna.walker.activity == "walking":
         x, y = anna.pose().position_m[:2]
         away = np.hypot(max(abs(x) - 0.1, 0.0), max(abs(y) - 1.5, 0.0))
         nearest = min(nearest, float(away))
         world.step(6)
     assert np.hypot(anna.pose().position_m[0] - 1.5, anna.pose().position_m[1]) < 0.05
     assert nearest > 0.18
-    assert anna.problem == ""
+    assert anna.walker.problem == ""
     world.close()
 
 
@@ -159,17 +159,17 @@ def test_people_do_not_walk_through_each_other() -> None:
     )
     anna, ben = one(world, "anna"), one(world, "ben")
     world.step(1)
-    assert anna.walk_to((2.0, 0.0))
-    assert ben.walk_to((-2.0, 0.0))
+    assert anna.walker.walk_to((2.0, 0.0))
+    assert ben.walker.walk_to((-2.0, 0.0))
     nearest = 9.0
     for _ in range(600):
         world.step(12)
         between = np.subtract(anna.pose().position_m, ben.pose().position_m)
         nearest = min(nearest, float(np.hypot(*between[:2])))
-        if anna.activity == ben.activity == "standing":
+        if anna.walker.activity == ben.walker.activity == "standing":
             break
     assert nearest > 0.3
-    assert anna.problem or np.hypot(anna.pose().position_m[0] - 2.0, 0.0) < 0.1
+    assert anna.walker.problem or np.hypot(anna.pose().position_m[0] - 2.0, 0.0) < 0.1
     world.close()
 
 
@@ -181,13 +181,13 @@ def test_one_sits_upon_a_seat_and_gets_up() -> None:
     )
     anna = one(world, "anna")
     world.step(1)
-    assert anna.seats() == ("seat",)
-    assert anna.sit_on("seat")
+    assert anna.walker.seats() == ("seat",)
+    assert anna.walker.sit_on("seat")
     seen = []
     for _ in range(400):
         world.step(12)
-        seen.append(anna.activity)
-        if anna.activity == "seated":
+        seen.append(anna.walker.activity)
+        if anna.walker.activity == "seated":
             break
     assert list(dict.fromkeys(seen)) == ["walking", "sitting down", "seated"]
     rig, joints = STICK.rig, anna.skeleton().joints
@@ -198,11 +198,11 @@ def test_one_sits_upon_a_seat_and_gets_up() -> None:
     assert 0.46 < on_seat[2] < 0.60
     assert -0.21 < on_seat[0] < 0.25
     assert abs(on_seat[1]) < 0.1
-    assert anna.seats() == ("seat",)  # it is her own
-    anna.get_up()
+    assert anna.walker.seats() == ("seat",)  # it is her own
+    anna.walker.get_up()
     for _ in range(60):
         world.step(12)
-    assert anna.activity == "standing"
+    assert anna.walker.activity == "standing"
     world.close()
 
 
@@ -249,9 +249,9 @@ def test_limbs_push_what_stands_in_their_way() -> None:
     anna = one(world, "anna")
     world.step(1)
     before = world.body(world.find("ball")).pose().position_m
-    anna._follow([(-0.8, 0.0), (1.2, 0.0)], None)
+    anna.walker._follow([(-0.8, 0.0), (1.2, 0.0)], None)
     touched = set()
-    while anna.activity == "walking":
+    while anna.walker.activity == "walking":
         world.step(4)
         for contact in world.contacts(0.05):
             touched.add((contact.first, contact.second))
