@@ -74,7 +74,7 @@ def _trousers(hem_m: float, waist_m: float = 0.12) -> Callable[[Landmarks], Doub
 
 
 def _skirt(hem_m: float) -> Callable[[Landmarks], Doubles]:
-    return lambda marks: np.maximum(hem_m - marks.height_m, marks.height_m - 9.0)
+    return _trousers(hem_m, 0.16)
 
 
 def _shoes(top_m: float) -> Callable[[Landmarks], Doubles]:

@@ -63,7 +63,10 @@ class Landmarks:
     @cached_property
     def neck_m(self) -> Doubles:
         """(V,): height above a plane through the base of the neck, lower in front."""
-        height: Doubles = self.base[:, 2] - 0.59 + 0.45 * self.base[:, 0]
+        x, y, z = self.base.T
+        # Shoulders are as high as the neck begins, and are not it.
+        beside = np.maximum(np.abs(y) - 0.075, 0.0)
+        height: Doubles = z - 0.59 + 0.45 * x - 0.6 * beside
         return height
 
     @cached_property

@@ -37,7 +37,10 @@ _BEHAVIOURS = {
     "open_and_close": "open_and_close",
     "poltergeist": "poltergeist",
     "rotate_rigidbody": "rotate_rigidbody",
+    "sit": "sit",
     "uniform_movement_random_bounce": "uniform_movement_random_bounce",
+    "visit": "visit",
+    "walk_around": "walk_around",
     "wander_plane": "wander_plane",
     "wrench": "wrench",
 }

@@ -50,7 +50,7 @@ _FEET_BEFORE_M = 0.02
 
 
 class Walker:
-    """What one person does; a `behaviours.person.Person`.
+    """One person on its way; a `behaviours.person.Person`.
 
     Parameters
     ----------

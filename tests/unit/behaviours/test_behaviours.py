@@ -45,6 +45,9 @@ CORNERS: list[dict[str, Any]] = [
     {"position": [0, 2, 1], "rotation": [0, 0, -90]},
 ]
 
+OF_PEOPLE = ("walk_around", "sit", "visit")
+"""See `test_behaviours_of_people`."""
+
 ALL: dict[str, dict[str, Any]] = {
     "rotate_rigidbody": {},
     "poltergeist": {"mean_interval": 0.2},
@@ -77,7 +80,7 @@ def test_a_step_is_the_engines() -> None:
 def test_all_are_listed_and_each_says_what_it_does() -> None:
     """The registry holds them all, with a sentence and described parameters."""
     kinds = behaviour_kinds()
-    assert set(kinds) == set(ALL)
+    assert set(kinds) == {*ALL, *OF_PEOPLE}
     for kind in kinds.values():
         assert kind.summary.endswith(".")
         assert all(field.description for field in kind.parameters.model_fields.values())
