@@ -48,7 +48,7 @@ __all__ = ["make_person"]
 Doubles = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-SKIN_TRIANGLES = 11000
+SKIN_TRIANGLES = 8000
 """Of a whole skin: what clothes hide of it is left out besides."""
 
 SKIN_ERROR = 0.0016

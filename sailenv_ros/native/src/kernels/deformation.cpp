@@ -54,6 +54,7 @@ constexpr int64_t TILE_ROWS = 16;
 constexpr int64_t TILE_VERTICES = 2048;
 constexpr double FIRST_REACH = 3e-5;  // how far beside a surface its points are looked for [m]
 constexpr double LAST_REACH = 0.1;
+constexpr double ON_SURFACE = 2e-6;  // what is no farther is on the leaf of its neighbour [m]
 
 // Four columns of a matrix of three rows.
 struct Columns {
@@ -180,7 +181,7 @@ void nearest_of_triangle(const Point& p, const Point& a, const Point& ab, const 
 
 struct Nearest {
     double square;
-    int32_t triangle;
+    int32_t triangle, leaf;
     double weights[3];
 };
 
@@ -202,7 +203,7 @@ void look_in_leaf(const RayShape& s, int32_t leaf, const Point& p, Nearest& best
         const double square = dot(off, off);
         // Where two meet, the lower number wins, whatever the order of the leaves.
         if (square < best.square || (square == best.square && triangle < best.triangle)) {
-            best = {square, triangle, {w[0], w[1], w[2]}};
+            best = {square, triangle, leaf, {w[0], w[1], w[2]}};
         }
     }
 }
@@ -238,7 +239,8 @@ bool find_nearest(const RayShape& s, const Point& p, double reach, Nearest& best
     return best.triangle != std::numeric_limits<int32_t>::max();
 }
 
-void find_pixel(const SurfacePoints& in, int64_t at, int64_t row) {
+// `leaf` is where the neighbour was found, -1 for nowhere, and becomes where this one is.
+void find_pixel(const SurfacePoints& in, int64_t at, int64_t row, int32_t& leaf) {
     const RayShape& shape = in.shapes[row];
     const double* scale = in.scales + 3 * row;
     float* found = in.found + 3 * at;
@@ -248,11 +250,13 @@ void find_pixel(const SurfacePoints& in, int64_t at, int64_t row) {
         p.x[k] = static_cast<double>(in.points[3 * at + k]) / scale[k];
         known = known && p.x[k] - p.x[k] == 0.0;
     }
-    Nearest best;
-    bool near = false;
+    Nearest best{ON_SURFACE * ON_SURFACE, std::numeric_limits<int32_t>::max(), -1, {}};
+    if (known && leaf >= 0) look_in_leaf(shape, leaf, p, best);
+    bool near = best.leaf >= 0;
     for (double reach = FIRST_REACH; known && !near && reach <= LAST_REACH; reach *= 15.0) {
         near = find_nearest(shape, p, reach, best);
     }
+    leaf = near ? best.leaf : -1;
     if (!near) {
         for (int k = 0; k < 3; k++) found[k] = NOT_A_NUMBER;
         return;
@@ -319,9 +323,15 @@ SAILENV_KERNEL(surface_points)(int64_t threads, const SurfacePoints* given) {
     const SurfacePoints in = *given;
     if (in.height < 0 || in.width < 0 || in.rows < 0) return STATUS_INVALID_ARGUMENT;
     parallel_for(threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
-        for (int64_t at = begin * in.width; at < end * in.width; at++) {
-            const int64_t asked = in.row_of_instance[in.instance[at]];
-            if (asked >= 1 && asked <= in.rows) find_pixel(in, at, asked - 1);
+        for (int64_t v = begin; v < end; v++) {
+            int64_t before = 0;
+            int32_t leaf = -1;
+            for (int64_t at = v * in.width; at < (v + 1) * in.width; at++) {
+                const int64_t asked = in.row_of_instance[in.instance[at]];
+                if (asked != before) leaf = -1;
+                before = asked;
+                if (asked >= 1 && asked <= in.rows) find_pixel(in, at, asked - 1, leaf);
+            }
         }
     });
     return STATUS_OK;
