@@ -254,16 +254,10 @@ def walks(rooms: int, count: int) -> None:
     for number in range(rooms):
         name = f"generated:{kinds[number % 4]}:{number}"
         text = library.path(name).read_text()
-        extra = (
-            "randomise:\n  - {type: people, name: person, count: 1, activity: [stand]}\n"
-            if "randomise:" not in text
-            else ""
-        )
         with tempfile.TemporaryDirectory() as folder:
             world = library.build(scene_file(Path(folder), text))
-            del extra
             try:
-                found = walks_in(world, library, number, count)
+                found = walks_in(world, number, count)
             finally:
                 world.close()
         for ok, problem, depth, low, slide in found:
@@ -280,14 +274,17 @@ def walks(rooms: int, count: int) -> None:
     )
 
 
-def walks_in(world: World, library: SceneLibrary, seed: int, count: int):
+STOCK = AssetLibrary(installed_sources())
+
+
+def walks_in(world: World, seed: int, count: int):
     """Yield (arrived, problem, depth, lowest sole, slide) of walks in one room."""
     from sailenv_ros.types.geometry import Pose
     from sailenv_ros.world.placement import Placement
 
     rng = np.random.default_rng(seed)
     names = list(people())
-    asset = library.assets.get(names[seed % len(names)])
+    asset = STOCK.get(names[seed % len(names)])
     category = world.contents.categories.named("person").id
     id_ = world.spawn(Placement(name="walker", asset=asset, category_id=category, pose=Pose()))
     person = world.body(id_)
