@@ -102,9 +102,7 @@ def flow_errors(frame, before) -> np.ndarray:
         picked = np.random.default_rng(id_).choice(len(v), min(len(v), 400), replace=False)
         v, u = v[picked], u[picked]
         now, then = deformed_model(shape), deformed_model(before.states.deformations[id_])
-        own_now, own_then = (
-            one.states.matrices[one.states.row(id_)] for one in (frame, before)
-        )
+        own_now, own_then = (one.states.matrices[one.states.row(id_)] for one in (frame, before))
         rays = camera.intrinsics.rays()[v, u] @ camera.world_from_camera[:3, :3].T
         origin = own_now[:3, :3].T @ (camera.world_from_camera[:3, 3] - own_now[:3, 3])
         directions = rays @ own_now[:3, :3]
@@ -204,10 +202,17 @@ def clothes() -> None:
         stride = figure.stride
         feet = standing_feet(0.0, 0.0, 0.0, stride.width_m)
         way = way_along(feet, [(0.0, 0.0), (3.0, 0.0)], stride)
-        worn = {place for part in asset.parts if part.name not in ("hair", "shoes") for place in part.meshes}
+        worn = {
+            place
+            for part in asset.parts
+            if part.name not in ("hair", "shoes")
+            for place in part.meshes
+        }
         outside, count = 0, 0
         for time_s in (0.0, 1.3 * stride.step_s, 1.8 * stride.step_s):
-            matrices = np.ascontiguousarray(skin_matrices(rig, walking_posture(rig, way.at(time_s), time_s)))
+            matrices = np.ascontiguousarray(
+                skin_matrices(rig, walking_posture(rig, way.at(time_s), time_s))
+            )
             moved = [
                 skin(part.mesh.positions, part.mesh.normals, b, w, matrices, threads=2)
                 for part, b, w in zip(asset.model.parts, rig.bones, rig.weights, strict=True)
@@ -387,7 +392,12 @@ def coco() -> None:
     category = {"id": 1, "name": "person", "keypoints": list(COCO_KEYPOINTS), "skeleton": []}
     with contextlib.redirect_stdout(io.StringIO()):
         truth = COCO()
-        truth.dataset = {"images": images, "annotations": annotations, "categories": [category], "info": {}}
+        truth.dataset = {
+            "images": images,
+            "annotations": annotations,
+            "categories": [category],
+            "info": {},
+        }
         truth.createIndex()
         results = [
             {"image_id": a["image_id"], "category_id": 1, "keypoints": a["keypoints"], "score": 1.0}

@@ -75,7 +75,7 @@ def figure_of(rig: Rig) -> Figure:
             ankle_m=height,
             hips=0.5 * (hip + other),
             ball=np.array([forward, 0.0, -height]),
-            heel=np.array([-0.38 * forward, 0.0, -height]),
+            heel=np.array([-0.52 * forward, 0.0, -height]),
             half_width_m=0.5 * float(hip[1] - other[1]),
             height_m=float(rig.head("head")[2]),
         )

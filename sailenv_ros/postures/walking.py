@@ -104,7 +104,7 @@ def walking_posture(
         ankle, foot = _within_reach(figure, feet[k], own[k], hip)
         pole = np.array([np.cos(own[k].yaw), np.sin(own[k].yaw) + 0.05 * sign, 0.0])
         turns |= bend_leg(rig, side, hip, ankle, foot, pole)
-        turns[f"toe1-1.{side}"] = _toes(foot, own[k])
+        turns[f"toe1-1.{side}"] = _toes(foot)
     breath = breathing(time_s, seed)
     chest = turn_about("z", twist) @ turn_about("y", 2.5 * vigour + 0.25 * breath)
     turns["spine03"] = turn_about("z", -0.3 * twist) @ turn_about("y", 2.0 * vigour)
@@ -181,8 +181,7 @@ def _within_reach(figure: Figure, foot: Foot, place: FootPrint, hip: Doubles) ->
     return _standing_foot(figure, place, 0.0, high)
 
 
-def _toes(foot: Doubles, place: FootPrint) -> Doubles:
+def _toes(foot: Doubles) -> Doubles:
     """Return the turn of toes that stay on the floor while the heel rises."""
     pitch = float(np.degrees(np.arcsin(np.clip(-foot[2, 0], -1.0, 1.0))))
-    del place
-    return foot @ turn_about("y", -0.85 * pitch) if pitch > 0.0 else foot
+    return foot @ turn_about("y", -pitch) if pitch > 0.0 else foot

@@ -32,7 +32,7 @@ _ROUNDED_M = 0.05
 _NEAR_M = 0.9
 """How far from a free place one may stand or want to go [m]."""
 
-_RADIUS = 0.145
+_RADIUS = 0.165
 """Of a body, as a share of its height."""
 
 
