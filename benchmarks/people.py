@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import io
+import itertools
 import json
 import tempfile
 import time
@@ -27,14 +28,13 @@ from sailenv_ros import AgentSpec, CameraIntrinsics, Simulation
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.frame.motion import ObjectPoints, SceneGeometry, track
-from sailenv_ros.postures.footsteps import standing_feet, way_along
+from sailenv_ros.native.deformation_kernels import skin
 from sailenv_ros.postures.figure import figure_of
+from sailenv_ros.postures.footsteps import standing_feet, way_along
 from sailenv_ros.postures.skeleton import skin_matrices
 from sailenv_ros.postures.walking import walking_posture
-from sailenv_ros.native.deformation_kernels import skin
 from sailenv_ros.rays.opaque_models import deformed_model
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.geometry import look_at
 from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.world import World
@@ -44,12 +44,15 @@ version: 1
 room: {size: [6, 5, 2.6]}
 objects:
   - {name: sofa, asset: couch_02, position: [-1.9, 0, 0]}
-  - {name: anna, asset: person_01, position: [1.5, -1.2, 0], behaviours: [{type: walk_around, pause: [0.3, 0.6]}]}
-  - {name: ben, asset: person_02_in_parts, position: [1.2, 1.4, 0], behaviours: [{type: sit, sitting: [1, 2]}]}
+  - {name: anna, asset: person_01, position: [1.5, -1.2, 0],
+     behaviours: [{type: walk_around, pause: [0.3, 0.6]}]}
+  - {name: ben, asset: person_02_in_parts, position: [1.2, 1.4, 0],
+     behaviours: [{type: sit, sitting: [1, 2]}]}
 """
 
 
 def scene_file(folder: Path, text: str = SCENE) -> Path:
+    """Write a scene; return its path."""
     path = folder / "people.yaml"
     path.write_text(text)
     return path
@@ -70,7 +73,7 @@ def skin_motion(frames: int = 200) -> None:
                 frame = simulation.capture(["depth", "instance", "flow", "object_coords"])
                 kept.append(frame)
             geometry = SceneGeometry.of_contents(simulation.contents)
-    for before, frame in zip(kept[:-1], kept[1:], strict=True):
+    for before, frame in itertools.pairwise(kept):
         errors = flow_errors(frame, before)
         if len(errors):
             worst = max(worst, float(np.quantile(errors, 0.999)))
@@ -125,7 +128,7 @@ def flow_errors(frame, before) -> np.ndarray:
 def nearest_hits(
     corners: np.ndarray, origin: np.ndarray, directions: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The nearest front-facing triangle of each ray, and the weights of its corners."""
+    """Return the nearest triangle that faces each ray, and the weights of its corners."""
     first, ab, ac = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     q = np.cross(origin - first, ab)
     triangle, weights = np.full(len(directions), -1), np.zeros((len(directions), 3))
@@ -171,7 +174,7 @@ def track_errors(tracks, frames) -> np.ndarray:
 
 
 def on_triangle(corners: np.ndarray, point: np.ndarray) -> tuple[int, np.ndarray]:
-    """The triangle that a point lies on, and its weights."""
+    """Return the triangle that a point lies on, and its weights."""
     a, ab, ac = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     ap = point - a
     bb, bc, cc = (ab * ab).sum(1), (ab * ac).sum(1), (ac * ac).sum(1)
@@ -233,7 +236,8 @@ def clothes() -> None:
         shares.append(outside / count)
     print(
         f"clothes: {len(shares)} people, {max(shares):.2%} of the vertices at most, "
-        f"{np.mean(shares):.2%} in the mean, lie more than 2 mm outside; the farthest {1e3 * worst:.0f} mm"
+        f"{np.mean(shares):.2%} in the mean, lie more than 2 mm outside; "
+        f"the farthest {1e3 * worst:.0f} mm"
     )
 
 
@@ -250,7 +254,7 @@ def beyond(points, cloth, normals, triangles) -> np.ndarray:
 
 
 def walks(rooms: int, count: int) -> None:
-    """Walks through generated rooms: arrivals, and how far bodies and feet go into things."""
+    """Tell of walks through generated rooms: arrivals, and how far limbs go into things."""
     library = SceneLibrary()
     kinds = ("living_room", "bedroom", "kitchen", "office")
     done = arrived = said = 0
@@ -273,9 +277,10 @@ def walks(rooms: int, count: int) -> None:
             lowest.append(low)
             slid.append(slide)
     print(
-        f"walks: {done} in {rooms} rooms, {arrived} arrived, {said} said why not; deepest in furniture "
-        f"{1e3 * max(deepest):.0f} mm, over 20 mm in {np.mean(np.array(deepest) > 0.02):.1%}; "
-        f"lowest sole {1e3 * min(lowest):.1f} mm; most slide {1e3 * max(slid):.1f} mm; {time.time() - begun:.0f} s"
+        f"walks: {done} in {rooms} rooms, {arrived} arrived, {said} said why not; "
+        f"deepest in furniture {1e3 * max(deepest):.0f} mm, over 20 mm in {np.mean(np.array(deepest) > 0.02):.1%}; "
+        f"lowest sole {1e3 * min(lowest):.1f} mm; "
+        f"most slide {1e3 * max(slid):.1f} mm; {time.time() - begun:.0f} s"
     )
 
 
@@ -335,7 +340,7 @@ def walks_in(world: World, seed: int, count: int):
 
 
 def cost() -> None:
-    """A frame with three people who walk, against the same without, at 640 × 480."""
+    """Compare a frame with three people with the same without them, at 640 × 480."""
     lens = CameraIntrinsics(width=640, height=480, vertical_fov_deg=60.0)
     eye = AgentSpec(name="eye", intrinsics=lens, following=False)
     spent = {}
@@ -411,6 +416,7 @@ def coco() -> None:
 
 
 def main() -> None:
+    """Run what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", choices=("skin", "clothes", "walks", "cost", "coco"))
     parser.add_argument("--rooms", type=int, default=200)

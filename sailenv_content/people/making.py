@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sailenv_content.people.cloth import strands
 from sailenv_content.people.dressing import PersonPart, Undressed, clothes
+from sailenv_content.people.fetch_bodies import SOURCE
 from sailenv_content.people.figures import figure
 from sailenv_content.people.garments import GARMENTS, SOLE_M
 from sailenv_content.people.hair import HAIRSTYLES, hair_pieces
@@ -31,6 +32,7 @@ from sailenv_content.people.rigging import (
     vertex_weights,
 )
 from sailenv_ros.assets.simplification import fewer_triangles
+from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
 from sailenv_ros.types.colour import linear_from_hex
 from sailenv_ros.types.model import (
     Asset,
@@ -322,5 +324,11 @@ def _skin_triangles(data: BodyData) -> tuple[Indices, Indices, Indices, Doubles]
     unique, place = np.unique(pairs, axis=0, return_inverse=True)
     triangles = place.reshape(-1, 3).astype(np.int64)
     positions = data.base[unique[:, 0]].copy()
-    fewer = fewer_triangles(positions, triangles, SKIN_TRIANGLES, max_error=SKIN_ERROR)
+
+    def made() -> Arrays:
+        fewer = fewer_triangles(positions, triangles, SKIN_TRIANGLES, max_error=SKIN_ERROR)
+        return {"triangles": fewer}
+
+    key = SOURCE, SKIN_TRIANGLES, SKIN_ERROR
+    fewer = cached_arrays("skin", key, made, code=code_digest("assets"))["triangles"]
     return fewer, fewer, unique[:, 0], data.uvs[unique[:, 1]]

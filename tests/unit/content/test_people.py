@@ -1,0 +1,105 @@
+"""People who are made of fetched data: their looks, meshes, clothes, keypoints in a frame."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sailenv_content.people.fetch_bodies import body_data, fetch_bodies
+from sailenv_content.people.figures import Build, figure
+from sailenv_content.people.looks import people
+from sailenv_content.people.makehuman import BODY_VERTICES, BodyData
+from sailenv_content.people.making import make_person
+from sailenv_content.people.source import IN_PARTS, PeopleSource
+from sailenv_ros import AgentSpec, CameraIntrinsics, Simulation
+from sailenv_ros.dataset.formats.coco import _keypoints
+from sailenv_ros.errors import AssetError
+from sailenv_ros.scene.randomise.things import random_people
+from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.skeleton import COCO_KEYPOINTS
+
+SCENE = """
+version: 1
+objects:
+  - {name: ground, asset: plane, static: true}
+  - {name: anna, asset: person_01, position: [2, 0, 0], rotation: [0, 0, 180]}
+  - {name: box, asset: cube, position: [1, 0, 0.3], scale: [0.1, 1.0, 0.6], static: true}
+"""
+
+
+@pytest.fixture(scope="module")
+def data() -> BodyData:
+    fetch_bodies()
+    found = body_data()
+    assert found is not None
+    return found
+
+
+def test_people_are_those_that_chance_may_choose() -> None:
+    assert tuple(people()) == random_people.PEOPLE
+    assert random_people.IN_PARTS == IN_PARTS
+    assert len(people()) >= 24
+
+
+def test_bodies_are_as_tall_as_people_are(data: BodyData) -> None:
+    heights = {}
+    for years in (4, 9, 30):
+        body = figure(data, Build(female=1.0, age_years=years, height=0.375))[:BODY_VERTICES]
+        assert body[:, 2].min() == pytest.approx(0.0)
+        heights[years] = float(body[:, 2].max())
+    assert 0.75 < heights[4] < heights[9] < 1.45 < heights[30] < 1.85
+
+
+def test_a_person_is_the_same_bytes_and_wears_what_is_said(data: BodyData) -> None:
+    look = people()["person_09"]
+    first, second = (make_person("someone", look, data, labelled=True) for _ in range(2))
+    for one, other in zip(first.model.parts, second.model.parts, strict=True):
+        assert one.mesh.positions.tobytes() == other.mesh.positions.tobytes()
+    assert {part.name for part in first.parts} == {"hair", "shirt", "skirt", "shoes"}
+    assert first.model.triangle_count < 16000
+    assert first.rig is not None
+    for bones, weights in zip(first.rig.bones, first.rig.weights, strict=True):
+        assert np.allclose(weights.sum(axis=1), 1.0, atol=1e-5)
+        assert int(bones.max()) < len(first.rig.names)
+    assert [point.name for point in first.rig.points] == list(COCO_KEYPOINTS)
+    assert abs(float(first.model.bounds()[0, 2])) < 0.002
+
+
+def test_without_data_there_are_no_people(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr("sailenv_content.people.source.body_data", lambda: None)
+    source = PeopleSource()
+    assert dict(source.display_names) == {}
+    with pytest.raises(AssetError, match="sailenv assets people"):
+        source.load("person_01")
+
+
+def test_keypoints_say_what_hides_them(data: BodyData, tmp_path: Path) -> None:
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE)
+    lens = CameraIntrinsics(width=320, height=240, vertical_fov_deg=60.0)
+    eye = AgentSpec(name="eye", intrinsics=lens, following=False)
+    with Simulation(path, mode="lockstep", agent=eye) as simulation:
+        simulation.set_pose(look_at((-1.0, 0.0, 1.0), (2.0, 0.0, 0.9)), teleport=True)
+        simulation.step(2)
+        frame = simulation.capture(["depth", "instance", "category"])
+        ids = {one.name: one.id for one in simulation.info.instances}
+    points = frame.keypoints(ids["anna"])
+    place = {name: number for number, name in enumerate(points.names)}
+    assert points.visible[place["nose"]]
+    assert points.hidden_by[place["nose"]] == 0
+    for side in ("left", "right"):
+        assert points.hidden_by[place[f"{side} ankle"]] == ids["box"]
+    u, v = np.rint(points.pixels[place["nose"]]).astype(int)
+    assert frame["instance"][v, u] == ids["anna"]
+    # She faces the camera: her left is on the right of the picture.
+    left, right = (points.pixels[place[f"{side} shoulder"]] for side in ("left", "right"))
+    assert left[0] > right[0] + 10
+    told = _keypoints(frame, ids["anna"])["keypoints"]
+    assert told[2] == 2
+    assert told[3 * COCO_KEYPOINTS.index("left ankle") + 2] == 1
+    assert len(frame.joints(ids["anna"]).names) == 58
+    row = frame.objects.row(ids["anna"])
+    assert frame.objects.box_sizes[row][1] < 0.75  # her arms hang
