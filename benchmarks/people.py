@@ -278,7 +278,8 @@ def walks(rooms: int, count: int) -> None:
             slid.append(slide)
     print(
         f"walks: {done} in {rooms} rooms, {arrived} arrived, {said} said why not; "
-        f"deepest in furniture {1e3 * max(deepest):.0f} mm, over 20 mm in {np.mean(np.array(deepest) > 0.02):.1%}; "
+        f"deepest in furniture {1e3 * max(deepest):.0f} mm, "
+        f"over 20 mm in {np.mean(np.array(deepest) > 0.02):.1%}; "
         f"lowest sole {1e3 * min(lowest):.1f} mm; "
         f"most slide {1e3 * max(slid):.1f} mm; {time.time() - begun:.0f} s"
     )

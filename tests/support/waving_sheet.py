@@ -41,7 +41,7 @@ def waved(model: Model, phase: float, *, above_m: float = -9.0) -> Deformation:
     moved = rest.copy()
     moved[high, 0] += 0.2 * np.sin(2.0 * rest[high, 1] + phase)
     moved[high, 1] += 0.05 * np.cos(3.0 * rest[high, 2] - phase)
-    normals = np.tile(np.float32([-1.0, 0.0, 0.0]), (len(rest), 1))
+    normals = np.tile(np.array([-1.0, 0.0, 0.0], np.float32), (len(rest), 1))
     return Deformation.of(model, [(moved.astype(np.float32), normals)])
 
 

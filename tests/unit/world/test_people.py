@@ -9,7 +9,7 @@ import pytest
 
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
-from sailenv_ros.behaviours import start_behaviour
+from sailenv_ros.behaviours import RunningBehaviour, start_behaviour
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset, BoxShape, Model, ModelPart
@@ -27,10 +27,10 @@ TOES = tuple(STICK.rig.joint_of[f"toe1-1.{side}"] for side in "LR") if STICK.rig
 
 
 def box(name: str, size: tuple[float, float, float], category: str = "cube") -> Asset:
-    half = tuple(0.5 * side for side in size)
+    half = 0.5 * size[0], 0.5 * size[1], 0.5 * size[2]
     mesh = box_mesh(size)
     lifted = type(mesh)(
-        positions=mesh.positions + np.float32([0.0, 0.0, half[2]]),
+        positions=mesh.positions + np.array([0.0, 0.0, half[2]], np.float32),
         normals=mesh.normals,
         uvs=mesh.uvs,
         triangles=mesh.triangles,
@@ -49,7 +49,7 @@ def chair() -> Asset:
     seat, back = box("seat", (0.5, 0.5, 0.45)), box("back", (0.08, 0.5, 0.9))
     moved = back.model.parts[0].mesh
     behind = type(moved)(
-        positions=moved.positions + np.float32([-0.25, 0.0, 0.0]),
+        positions=moved.positions + np.array([-0.25, 0.0, 0.0], np.float32),
         normals=moved.normals,
         uvs=moved.uvs,
         triangles=moved.triangles,
@@ -81,7 +81,7 @@ def placed(name: str, asset: Asset, x: float, y: float, yaw: float = 0.0, **more
 
 
 def person(name: str, x: float, y: float, kind: str = "", **parameters: Any) -> Placement:
-    behaviours = ()
+    behaviours: tuple[RunningBehaviour, ...] = ()
     if kind:
         behaviours = (start_behaviour(kind, parameters, seed=3, object_name=name, place=0),)
     return placed(name, STICK, x, y, behaviours=behaviours)
