@@ -252,8 +252,9 @@ class Body:
             accepted = f"one on a joint for the behaviour {running.kind.type!r}"
             raise InvalidRequest("object", name, accepted)
         if running.parameters.needs_person and self.placement.asset.rig is None:
-            accepted = f"a person for the behaviour {running.kind.type!r}"
-            raise InvalidRequest("object", name, accepted)
+            raise InvalidRequest(
+                "object", name, f"a person for the behaviour {running.kind.type!r}"
+            )
         if len(self._behaviours) >= MAX_BEHAVIOURS:
             raise InvalidState(
                 f"object {name!r} has {MAX_BEHAVIOURS} behaviours, which is the most; "

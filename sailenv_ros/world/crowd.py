@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.postures.footsteps import Way
 from sailenv_ros.space.free_space import FREE, OCCUPIED, BodySize, FreeSpace
 from sailenv_ros.space.grid import map_free_space
 from sailenv_ros.space.outlines import Solid, solids_of
@@ -67,6 +68,29 @@ class Crowd:
         """Return what others take: people but one, and movers."""
         found = [disc for name, disc in self.people.items() if name != without]
         return [*found, *self._others()]
+
+    def blocks(self, name: str, radius_m: float, way: Way, number: int) -> bool:
+        """Return whether someone stands where a person is after the next steps of its way."""
+        here = way.at(number * way.step_s)
+        for ahead in (1, 2):
+            there = way.at((number + ahead) * way.step_s)
+            for x, y, radius in self.discs(name):
+                now = np.hypot(x - here.x, y - here.y)
+                then = np.hypot(x - there.x, y - there.y)
+                if then < radius + radius_m and then < now:
+                    return True
+        return False
+
+    def look_deg(self, name: str, world_from_body: Doubles, eyes_m: float) -> tuple[float, float]:
+        """Return where an object is for eyes at a height: to the left, and down [deg]."""
+        target = self.middle(name)
+        if target is None:
+            return 0.0, 0.0
+        own = world_from_body[:3, :3].T @ (target - world_from_body[:3, 3])
+        away = float(np.hypot(own[0], own[1]))
+        down = eyes_m - float(own[2])
+        yaw = float(np.degrees(np.arctan2(own[1], own[0])))
+        return yaw, float(np.degrees(np.arctan2(down, max(away, 0.2))))
 
     def seats(self) -> tuple[Seat, ...]:
         """Return all seats."""

@@ -108,7 +108,10 @@ class Walker:
     def posture(self) -> Posture:
         """Where its root and joints are now, in the body frame before the scale."""
         moment = self._moment().scaled(1.0 / self._scale)
-        look = self._look_deg()
+        look = 0.0, 0.0
+        if self._looks_at and self.crowd is not None:
+            eyes_m = self._figure.height_m * self._scale
+            look = self.crowd.look_deg(self._looks_at, self.matrix, eyes_m)
         seed = zlib.crc32(self._name.encode()) % 97
         if self._seat is not None and self._way is None:
             share = min(self._sit_s / SIT_S, 1.0)
@@ -285,7 +288,7 @@ class Walker:
         assert way is not None
         number, later = (int(t / way.step_s + 1e-9) for t in (self._way_s, self._way_s + STEP_S))
         if later > number or self._way_s == 0.0:
-            if self._is_blocked(way, later):
+            if self.crowd is not None and self.crowd.blocks(self._name, self._radius_m, way, later):
                 self._wait(way, later)
                 return
             self._waited_s = 0.0
@@ -294,20 +297,6 @@ class Walker:
             self._feet = way.feet_after(len(way.prints))
             self._way = None
         self.matrix = self._matrix_of_moment()
-
-    def _is_blocked(self, way: Way, number: int) -> bool:
-        if self.crowd is None:
-            return False
-        here = way.at(number * way.step_s)
-        for ahead in (1, 2):
-            there = way.at((number + ahead) * way.step_s)
-            for x, y, radius in self.crowd.discs(self._name):
-                near = radius + self._radius_m
-                now = np.hypot(x - here.x, y - here.y)
-                then = np.hypot(x - there.x, y - there.y)
-                if then < near and then < now:
-                    return True
-        return False
 
     def _wait(self, way: Way, number: int) -> None:
         """Stand where a step has ended; go round who stands in the way, or give up."""
@@ -361,15 +350,3 @@ class Walker:
             for seat in self.crowd.seats()
             if all(np.hypot(seat.x - x, seat.y - y) > 0.5 for x, y in taken)
         ]
-
-    def _look_deg(self) -> tuple[float, float]:
-        if not self._looks_at or self.crowd is None:
-            return 0.0, 0.0
-        target = self.crowd.middle(self._looks_at)
-        if target is None:
-            return 0.0, 0.0
-        own = self.matrix[:3, :3].T @ (target - self.matrix[:3, 3])
-        away = float(np.hypot(own[0], own[1]))
-        down = self._figure.height_m * self._scale - float(own[2])
-        yaw = float(np.degrees(np.arctan2(own[1], own[0])))
-        return yaw, float(np.degrees(np.arctan2(down, max(away, 0.2))))
