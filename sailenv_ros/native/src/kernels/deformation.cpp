@@ -56,6 +56,14 @@ constexpr double FIRST_REACH = 3e-5;  // how far beside a surface its points are
 constexpr double LAST_REACH = 0.1;
 constexpr double ON_SURFACE = 2e-6;  // what is no farther is on the leaf of its neighbour [m]
 
+constexpr double BESIDE = 1e-4;  // share of a triangle by which a point may lie beside it
+
+typedef double d8 __attribute__((vector_size(64)));
+typedef int64_t l8 __attribute__((vector_size(64)));
+typedef double d8_any __attribute__((vector_size(64), aligned(8), may_alias));
+
+inline d8 vector_of(const double* p) { return *reinterpret_cast<const d8_any*>(p); }
+
 // Four columns of a matrix of three rows.
 struct Columns {
     f4 c[4];
@@ -208,14 +216,49 @@ void look_in_leaf(const RayShape& s, int32_t leaf, const Point& p, Nearest& best
     }
 }
 
+// The same for points that lie over a triangle, eight triangles at a time.
+void look_over_leaf(const RayShape& s, int32_t leaf, const Point& p, Nearest& best) {
+    const double* from = static_cast<const double*>(s.triangles) + 9 * WIDTH * int64_t{leaf};
+    d8 ap[3], ab[3], ac[3];
+    for (int j = 0; j < 3; j++) {
+        ap[j] = p.x[j] - vector_of(from + WIDTH * j);
+        ab[j] = vector_of(from + WIDTH * (3 + j));
+        ac[j] = vector_of(from + WIDTH * (6 + j));
+    }
+    const auto product = [](const d8* a, const d8* b) {
+        return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+    };
+    const d8 bb = product(ab, ab), bc = product(ab, ac), cc = product(ac, ac);
+    const d8 d1 = product(ab, ap), d2 = product(ac, ap);
+    const d8 whole = bb * cc - bc * bc;
+    const d8 second = (cc * d1 - bc * d2) / whole, third = (bb * d2 - bc * d1) / whole;
+    d8 off[3];
+    for (int j = 0; j < 3; j++) off[j] = (ap[j] - second * ab[j]) - third * ac[j];
+    const d8 square = product(off, off);
+    // Of triangles without area nothing holds.
+    const l8 over = (second >= -BESIDE) & (third >= -BESIDE) & (second + third <= 1.0 + BESIDE) &
+                    (square < best.square);
+    for (int k = 0; k < WIDTH; k++) {
+        if (over[k] == 0) continue;
+        const int32_t triangle = s.order[WIDTH * int64_t{leaf} + k];
+        if (triangle < 0) continue;
+        if (square[k] < best.square || (square[k] == best.square && triangle < best.triangle)) {
+            best = {square[k], triangle, leaf, {(1.0 - second[k]) - third[k], second[k], third[k]}};
+        }
+    }
+}
+
 // The triangle that is nearest to a point, if one is within `reach`.
 bool find_nearest(const RayShape& s, const Point& p, double reach, Nearest& best) {
+    const bool is_over = reach == FIRST_REACH;
     best.square = reach * reach;
     best.triangle = std::numeric_limits<int32_t>::max();
     int32_t waiting[WAITING];
     int32_t count = 0, child = 0;
     while (true) {
-        if (child < 0) {
+        if (child < 0 && is_over) {
+            look_over_leaf(s, ~child, p, best);
+        } else if (child < 0) {
             look_in_leaf(s, ~child, p, best);
         } else {
             const TreeNode& n = s.nodes[child];
@@ -251,7 +294,7 @@ void find_pixel(const SurfacePoints& in, int64_t at, int64_t row, int32_t& leaf)
         known = known && p.x[k] - p.x[k] == 0.0;
     }
     Nearest best{ON_SURFACE * ON_SURFACE, std::numeric_limits<int32_t>::max(), -1, {}};
-    if (known && leaf >= 0) look_in_leaf(shape, leaf, p, best);
+    if (known && leaf >= 0) look_over_leaf(shape, leaf, p, best);
     bool near = best.leaf >= 0;
     for (double reach = FIRST_REACH; known && !near && reach <= LAST_REACH; reach *= 15.0) {
         near = find_nearest(shape, p, reach, best);
