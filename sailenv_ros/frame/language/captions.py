@@ -22,7 +22,7 @@ class Caption:
     ----------
     text : str
     objects : tuple of int
-        Ids of the objects that it speaks of.
+        Ids of the objects that it names.
     relations : tuple of Relation
         Those that it tells, with their numbers.
     """
