@@ -1,8 +1,7 @@
 """Definition of a behaviour: a parameter model and a function from a body's state to an action.
 
 The function sees time, the body's state, a memory of its own and a seeded generator; it returns
-what the engine shall do during the next physics step. It knows no engine, so it can be tested
-with plain numbers.
+what the engine, which it does not know, shall do during the next physics step.
 """
 
 from __future__ import annotations
@@ -37,8 +36,6 @@ __all__ = [
 Vector3 = tuple[float, float, float]
 
 MAX_VIEW_DISTANCE_M = 10.0
-
-
 STEP_S = 1.0 / STEPS_PER_SECOND
 """Simulated time that an action lasts: one physics step."""
 

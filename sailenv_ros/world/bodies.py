@@ -1,7 +1,6 @@
 """One rigid body: a placement becomes a PyBullet body whose pose can be read and set.
 
-PyBullet reports the pose of the centre of mass; here poses are those of the body frame, the one
-in which the model's vertices stand.
+PyBullet reports the pose of the centre of mass; here poses are those of the model's own frame.
 """
 
 from __future__ import annotations
@@ -28,10 +27,7 @@ Vector3 = tuple[float, float, float]
 FrustumPlanes: TypeAlias = Callable[[str, float], NDArray[np.float64]]
 """``frustum_planes(agent, distance_m)`` returns planes of an agent's view frustum."""
 
-MAX_BEHAVIOURS = 16
-
-MAX_WRENCHES = 64
-
+MAX_BEHAVIOURS, MAX_WRENCHES = 16, 64
 TOUCH_M = 0.02
 """Greatest distance at which another body may rest on a body [m]."""
 
@@ -77,7 +73,7 @@ class Body:
         self._id = self._build()
         self.inertia_kg_m2 = np.ones(3)
         if self._id != NOT_THERE and not placement.static:
-            self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, LINK_OF_BASE)[2])
+            self.inertia_kg_m2 = np.asarray(client.getDynamicsInfo(self._id, LINK_OF_BASE)[2])
         self._static_pose = placement.pose
         self._quat = placement.pose.orientation_xyzw
         self._matrix = self._matrix_read = placement.pose.matrix()

@@ -1,7 +1,6 @@
 """A person's way through the world: where it walks, sits and looks, step by step.
 
-Told by behaviours, moved by time; from it follow the pose of the body and the posture in it. Knows
-the crowd around, and neither the engine nor skin.
+Told by behaviours, moved by time. Knows the crowd around, and neither the engine nor skin.
 """
 
 from __future__ import annotations
@@ -73,7 +72,6 @@ class Walker:
         ``pass_through(name, passes)`` lets limbs pass through a piece of furniture, or not.
     """
 
-    _seat: Seat | None
     _way: Way | None
 
     def __init__(self, name: str, rig: Rig, scale: float, pose: Pose) -> None:
@@ -83,7 +81,7 @@ class Walker:
         self.problem = ""
         self.pass_through: Callable[[str, bool], None] = lambda name, passes: None
         self._time_s = 0.0
-        self._seat = None
+        self._seat: Seat | None = None
         self.stand_at(pose)
 
     def stand_at(self, pose: Pose) -> None:
