@@ -26,7 +26,7 @@ from sailenv_content.scene_import.home_types import (
     Vector3,
 )
 from sailenv_content.scene_import.plan_walls import PlanWall
-from sailenv_content.scene_import.safe_xml import XmlNode
+from sailenv_ros.assets.safe_xml import XmlNode
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.colour import linear_from_srgb
 

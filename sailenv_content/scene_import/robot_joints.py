@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_content.scene_import.safe_xml import XmlNode
+from sailenv_ros.assets.safe_xml import XmlNode
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.validation import is_finite_number

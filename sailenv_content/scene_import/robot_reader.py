@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from sailenv_content.scene_import.safe_xml import read_xml
+from sailenv_ros.assets.safe_xml import read_xml
 
 __all__ = ["main"]
 
@@ -94,6 +94,9 @@ def _described(mujoco: Any, model: Any) -> tuple[dict[str, Any], dict[str, Any]]
             "quat_wxyz": data.xquat[number].tolist(),
             "mass": float(model.body_mass[number]),
             "parent": int(model.body_parentid[number]),
+            "centre": model.body_ipos[number].tolist(),
+            "moments": model.body_inertia[number].tolist(),
+            "axes_wxyz": model.body_iquat[number].tolist(),
             "rest_position": model.body_pos[number].tolist(),
             "rest_quat_wxyz": model.body_quat[number].tolist(),
             "joints": [
@@ -153,7 +156,23 @@ def _described(mujoco: Any, model: Any) -> tuple[dict[str, Any], dict[str, Any]]
         data = bytes(model.text_data[first : first + size]).rstrip(b"\0")
         texts[name(names.mjOBJ_TEXT, number)] = data.decode("utf-8", "replace")
     scene = {"bodies": bodies, "geoms": geoms, "lights": lights, "cameras": cameras, "texts": texts}
+    scene["followers"] = _followers(mujoco, model)
     return scene, arrays
+
+
+def _followers(mujoco: Any, model: Any) -> list[dict[str, Any]]:
+    """Return the joints that go with others in proportion."""
+    kind, joint = mujoco.mjtEq.mjEQ_JOINT, mujoco.mjtObj.mjOBJ_JOINT
+    return [
+        {
+            "joint": mujoco.mj_id2name(model, joint, int(model.eq_obj1id[number])) or "",
+            "leader": mujoco.mj_id2name(model, joint, int(model.eq_obj2id[number])) or "",
+            "offset": float(model.eq_data[number][0]),
+            "multiplier": float(model.eq_data[number][1]),
+        }
+        for number in range(model.neq)
+        if int(model.eq_type[number]) == kind and int(model.eq_obj2id[number]) >= 0
+    ]
 
 
 def _joint(mujoco: Any, model: Any, data: Any, body: int, joint: int) -> dict[str, Any]:

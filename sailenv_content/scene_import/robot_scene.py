@@ -6,12 +6,7 @@ names: only files beside it, and nothing that grows without end.
 
 from __future__ import annotations
 
-import json
 import math
-import os
-import subprocess
-import sys
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -25,12 +20,12 @@ from sailenv_content.scene_import.default_light import add_daylight
 from sailenv_content.scene_import.imported import Entry, ImportedScene, Names
 from sailenv_content.scene_import.robot_joints import check_limits, pose_entry, pose_of_body
 from sailenv_content.scene_import.robot_places import RobotPlaces
-from sailenv_content.scene_import.safe_xml import XmlNode, read_xml
 from sailenv_content.scene_import.scene_parts import asset_of_parts
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.model_files import RawPart
 from sailenv_ros.assets.pack import PackEntry
+from sailenv_ros.assets.robots.read_apart import checked_tree, read_apart
 from sailenv_ros.errors import AssetError
 from sailenv_ros.extras import need
 from sailenv_ros.types.colour import linear_from_srgb
@@ -42,19 +37,8 @@ __all__ = ["import_robot_scene"]
 Doubles = NDArray[np.float64]
 Geom: TypeAlias = Mapping[str, Any]
 
-LIMIT_S = 120.0
-MEMORY_BYTES = 4 * 2**30
-MOST_FILES = 50
 PLANE_M = 20.0
 """Side of a plane without end [m]."""
-
-GROWING = ("replicate", "composite", "flexcomp", "plugin", "size")
-"""Elements that make many out of few, or run what is not in the file."""
-
-FILE_KEYS = (
-    *("file", "filename", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback"),
-    *("meshdir", "texturedir", "assetdir"),
-)
 
 # MuJoCo's numbers, which its files fix.
 _PLANE, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH = 0, 2, 3, 4, 5, 6, 7
@@ -74,9 +58,9 @@ def import_robot_scene(path: Path, names: Names, ours: Mapping[str, PackEntry]) 
         If MuJoCo is not installed.
     """
     need("mujoco", "importing URDF and MJCF")
-    root = _checked(path)
+    root = checked_tree(path)
     limits = check_limits(root, path.name)
-    read, arrays = _read_apart(path)
+    read, arrays = read_apart(path)
     kind = "URDF" if root.tag == "robot" else "MJCF"
     title = root.text("name") or root.text("model") or path.stem
     scene = ImportedScene(title=title, description=f"Imported from the {kind} file {path.name}.")
@@ -87,73 +71,6 @@ def import_robot_scene(path: Path, names: Names, ours: Mapping[str, PackEntry]) 
     builder.add_lights()
     builder.add_cameras()
     return scene
-
-
-# -- the file ------------------------------------------------------------------------------
-
-
-def _checked(path: Path) -> XmlNode:
-    """Read the tree of a file and of those that it includes; refuse what leads elsewhere."""
-    home = path.resolve().parent
-    first: XmlNode | None = None
-    waiting, seen = [path.resolve()], {path.resolve()}
-    while waiting:
-        file = waiting.pop()
-        root = read_xml(file.read_bytes(), file.name)
-        if first is None:
-            first = root
-            if root.tag not in ("robot", "mujoco"):
-                raise AssetError(
-                    path.name, f"it must begin with <robot> or <mujoco>, and begins <{root.tag}>"
-                )
-        for node in root.walk():
-            if node.tag in GROWING:
-                raise AssetError(path.name, f"the element <{node.tag}> is not read")
-            for key in FILE_KEYS:
-                named = node.text(key)
-                plain = named.removeprefix("package://").removeprefix("file://")
-                if named and (plain != named or not _beside(home, plain)):
-                    raise AssetError(path.name, f"it names {named[:80]!r}, which is not beside it")
-            if node.tag == "include" and node.text("file"):
-                other = (home / node.text("file")).resolve()
-                if other not in seen and other.is_file():
-                    if len(seen) >= MOST_FILES:
-                        raise AssetError(path.name, f"it includes more than {MOST_FILES} files")
-                    seen.add(other)
-                    waiting.append(other)
-    assert first is not None
-    return first
-
-
-def _beside(home: Path, name: str) -> bool:
-    return "\0" not in name and (home / name).resolve().is_relative_to(home)
-
-
-def _read_apart(path: Path) -> tuple[dict[str, Any], dict[str, Doubles]]:
-    with tempfile.TemporaryDirectory(prefix="sailenv-import-") as name:
-        folder = Path(name)
-        command = [sys.executable, "-m", "sailenv_content.scene_import.robot_reader"]
-        command += [str(path.resolve()), str(folder), str(MEMORY_BYTES)]
-        package = str(Path(__file__).resolve().parents[3])
-        paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
-        try:
-            done = subprocess.run(
-                command,
-                env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
-                capture_output=True,
-                timeout=LIMIT_S,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            raise AssetError(path.name, f"reading it took longer than {LIMIT_S:g} s") from None
-        refused = folder / "refused.txt"
-        if refused.is_file():
-            raise AssetError(path.name, f"MuJoCo cannot read it: {refused.read_text('utf-8')}")
-        if done.returncode or not (folder / "scene.json").is_file():
-            raise AssetError(path.name, "its reader ended; it may be damaged, or too large")
-        read = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
-        with np.load(folder / "arrays.npz", allow_pickle=False) as file:
-            return read, {key: np.asarray(file[key], np.float64) for key in file.files}
 
 
 # -- the scene -----------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from sailenv_content.scene_import.imported import ImportedAsset
 from sailenv_ros.assets.hulls import hulls_of_pieces, merged
 from sailenv_ros.assets.meshes import RawMesh, components, is_open, simplified, smooth_mesh
 from sailenv_ros.assets.model_files import RawPart
+from sailenv_ros.assets.part_budget import simplified_parts
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.model import ConvexShape, Material, ModelPart
 
@@ -21,9 +22,6 @@ Doubles = NDArray[np.float64]
 
 LARGEST_M = 100.0
 SMALLEST_M = 1e-4
-
-TRIANGLES_AT_ONE_METRE = 12_000
-"""Greatest number of triangles of a model of one metre; a larger number is simplified."""
 
 HOLLOW = 0.25
 """A piece that fills less of its hull is hollow, like a room in one mesh."""
@@ -63,7 +61,7 @@ def asset_of_parts(
             f"it would be {float(size.max()):.4g} m large, and {SMALLEST_M} to {LARGEST_M} m are "
             "accepted",
         )
-    parts = _simplified(parts, float(np.linalg.norm(size)))
+    parts = simplified_parts(parts, float(np.linalg.norm(size)))
     drawn = []
     for part in parts:
         mesh = smooth_mesh(part.mesh)
@@ -88,22 +86,6 @@ def asset_of_parts(
         licence=licence[:300],
         source=source[:300],
     )
-
-
-def _simplified(parts: Sequence[RawPart], diagonal_m: float) -> list[RawPart]:
-    wanted = max(500.0, TRIANGLES_AT_ONE_METRE * diagonal_m**0.65)
-    count = sum(len(part.mesh.triangles) for part in parts)
-    if count <= wanted:
-        return list(parts)
-    share = wanted / count
-    result = []
-    for part in parts:
-        target = max(64, int(share * len(part.mesh.triangles)))
-        mesh: RawMesh = part.mesh
-        if len(mesh.triangles) > target:
-            mesh = simplified(mesh, target)
-        result.append(dataclasses.replace(part, mesh=mesh))
-    return result
 
 
 def _two_sided(material: Material) -> Material:

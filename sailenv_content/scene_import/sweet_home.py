@@ -24,11 +24,11 @@ from sailenv_content.scene_import.home_types import Home, HomePiece, HomeRoom, H
 from sailenv_content.scene_import.imported import Entry, ImportedAsset, ImportedScene, Names
 from sailenv_content.scene_import.plan_slabs import inside, slab
 from sailenv_content.scene_import.plan_walls import Opening, wall_solid
-from sailenv_content.scene_import.safe_xml import read_xml
 from sailenv_ros.assets.archives import unpack_zip
 from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
 from sailenv_ros.assets.model_files import LARGEST_TEXTURE_PX, RawPart, texture_of
 from sailenv_ros.assets.pack import PackEntry
+from sailenv_ros.assets.safe_xml import read_xml
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.model import ConvexShape, Material, ModelPart, Texture
 

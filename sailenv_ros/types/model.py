@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import AssetError
+from sailenv_ros.types.inertia import Inertia
 from sailenv_ros.types.rig import Rig
 from sailenv_ros.types.shapes import (
     BoxShape,
@@ -256,6 +257,8 @@ class Asset:
         lies behind it is lit.
     rig : Rig or None
         Skeleton by which the model deforms, if it has one.
+    inertia : Inertia or None
+        About the centre of mass; None takes that of the collision shapes.
 
     Raises
     ------
@@ -277,6 +280,7 @@ class Asset:
     still: Asset | None = None
     opens: bool = False
     rig: Rig | None = None
+    inertia: Inertia | None = None
 
     def __post_init__(self) -> None:
         taken = [place for part in self.parts for place in part.meshes]

@@ -12,11 +12,11 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sailenv_content.scene_import import robot_scene
 from sailenv_content.scene_import.imported import Names
 from sailenv_content.scene_import.importers import import_scene
 from sailenv_content.scene_import.robot_scene import import_robot_scene
 from sailenv_ros import Simulation
+from sailenv_ros.assets.robots import read_apart
 from sailenv_ros.errors import AssetError, SailenvError
 
 KITCHEN = """
@@ -144,10 +144,10 @@ def test_a_reader_without_memory_or_time_is_ended(
     """And said to be, in our words."""
     path = tmp_path / "kitchen.xml"
     path.write_text(KITCHEN, encoding="utf-8")
-    monkeypatch.setattr(robot_scene, "MEMORY_BYTES", 64 * 2**20)
+    monkeypatch.setattr(read_apart, "MEMORY_BYTES", 64 * 2**20)
     with pytest.raises(AssetError, match="its reader ended"):
         import_robot_scene(path, Names("x"), {})
-    monkeypatch.setattr(robot_scene, "LIMIT_S", 0.01)
+    monkeypatch.setattr(read_apart, "LIMIT_S", 0.01)
     with pytest.raises(AssetError, match="took longer"):
         import_robot_scene(path, Names("x"), {})
 

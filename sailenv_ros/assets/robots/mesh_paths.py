@@ -1,0 +1,64 @@
+"""Paths of the files that a robot's description names; only files of its own package are read."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from sailenv_ros.assets.archives import MAX_ARCHIVE_BYTES
+from sailenv_ros.errors import AssetError
+
+__all__ = ["mesh_path"]
+
+HIGHEST = 6
+"""Folders above a description among which its package is looked for."""
+
+PACKAGE, FILE = "package://", "file://"
+
+
+def mesh_path(named: str, description: Path) -> Path:
+    """Return the file that a description names.
+
+    Parameters
+    ----------
+    named : str
+        A path from the description's folder, or ``package://NAME/path``.
+    description : Path
+        The file that names it.
+
+    Raises
+    ------
+    AssetError
+        If it lies elsewhere, is missing or too large.
+    """
+    shown = f"mesh {named[:80]!r}"
+    if "\0" in named:
+        raise AssetError(description.name, f"{shown} has a NUL in its path")
+    homes = _homes(named, description.resolve().parent)
+    for home, inside in homes:
+        path = (home / inside).resolve()
+        if path.is_relative_to(home) and path.is_file():
+            if path.stat().st_size > MAX_ARCHIVE_BYTES:
+                raise AssetError(path.name, f"it is larger than {MAX_ARCHIVE_BYTES // 2**20} MB")
+            return path
+    accepted = "a file beside the description or in the package that it names is accepted"
+    raise AssetError(description.name, f"{shown} is not there; {accepted}")
+
+
+def _homes(named: str, folder: Path) -> list[tuple[Path, str]]:
+    """Return the folders that may hold a file, each with its path there."""
+    if not named.startswith(PACKAGE):
+        return [(folder, named.removeprefix(FILE))]
+    package, _, inside = named.removeprefix(PACKAGE).partition("/")
+    # Some descriptions leave the package's name out: package://meshes/arm.obj.
+    found = [(folder, f"{package}/{inside}")]
+    if package in ("", ".", ".."):
+        return found
+    for above in (folder, *folder.parents[:HIGHEST]):
+        if above.name == package:
+            found.append((above, inside))
+        if (above / package).is_dir():
+            found.append((above / package, inside))
+    shares = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    found += [(Path(share).resolve() / "share" / package, inside) for share in shares if share]
+    return found
