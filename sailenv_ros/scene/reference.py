@@ -69,6 +69,12 @@ PAGES: Mapping[str, Mapping[str, str]] = {
         "LessonsSpec": "Lessons",
         "LessonSpec": "A lesson",
     },
+    "robots.md": {
+        "RobotSpec": "A robot",
+        "RobotJointSpec": "A joint of a robot",
+        "WheelsSpec": "Wheels",
+        "SensorSpec": "A sensor",
+    },
     "scene_lights.md": {
         "EnvironmentSpec": "The environment",
         "_light": "Every light",

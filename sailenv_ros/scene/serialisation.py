@@ -126,6 +126,9 @@ def agent_entry(spec: AgentSpec, pose: Pose | None) -> dict[str, Any]:
         entry["cameras"] = camera_entries(spec.cameras)
     if spec.mover:
         entry["mover"] = spec.mover
+    if spec.carrier:
+        del entry["following"]
+        entry["carrier"] = spec.carrier
     if spec.look_at is not None:
         entry["keep_looking_at"] = look_at_entry(spec.look_at)
     return entry if pose is None else {**entry, **pose_entry(pose)}

@@ -34,6 +34,7 @@ from sailenv_ros.scene.spec_lessons import LessonSpec, LessonsSpec
 from sailenv_ros.scene.spec_look_at import LookAtSpec, faced_objects_exist
 from sailenv_ros.scene.spec_objects import BehaviourSpec, ObjectSpec
 from sailenv_ros.scene.spec_picture import PictureSpec
+from sailenv_ros.scene.spec_robots import RobotSpec, robots_stand
 from sailenv_ros.scene.spec_room import RoomSpec
 from sailenv_ros.scene.spec_surroundings import (
     AreaLightSpec,
@@ -63,6 +64,7 @@ __all__ = [
     "ObjectSpec",
     "PictureSpec",
     "PointLightSpec",
+    "RobotSpec",
     "RoomSpec",
     "SceneSpec",
     "SpotLightSpec",
@@ -105,7 +107,9 @@ class SceneSpec(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (
         at_most_one("mover", "movers"),
-        distinct("name", "lights", "objects", "movers", "agents", "categories", "randomise"),
+        distinct(
+            "name", "lights", "objects", "robots", "movers", "agents", "categories", "randomise"
+        ),
         random_targets_exist,
         distinct("id", "categories"),
         movers_exist,
@@ -113,6 +117,7 @@ class SceneSpec(SceneModel):
         carriers_exist,
         parents_exist,
         joints_hold,
+        robots_stand,
         walls_need_a_room,
         names_beside_room,
         pupils_exist,
@@ -145,6 +150,9 @@ class SceneSpec(SceneModel):
     room: RoomSpec | None = optional("walls, floor and ceiling around the origin, with openings")
     objects: tuple[ObjectSpec, ...] = Field(
         default=(), max_length=10000, description="objects of the scene"
+    )
+    robots: tuple[RobotSpec, ...] = Field(
+        default=(), max_length=16, description="robots of URDF and MJCF files"
     )
     mover: MoverSpec | None = optional("the track that agents follow")
     movers: tuple[MoverSpec, ...] = Field(

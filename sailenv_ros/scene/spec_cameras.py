@@ -147,6 +147,9 @@ class AgentSpecModel(_CameraEntry):
         default=True, description="true if it goes where its mover goes"
     )
     mover: Name | None = optional("the mover it follows; the scene's first if left out")
+    carrier: Name | None = optional(
+        "object that carries it, such as a link of a robot: position is in its frame"
+    )
     position: Position | None = optional("where it starts when it does not follow [m]")
     keep_looking_at: LookAtSpec | None = optional("look-at constraint")
     cameras: Annotated[tuple[RigCameraSpec, ...], Field(min_length=1, max_length=15)] | None = (
@@ -166,5 +169,6 @@ class AgentSpecModel(_CameraEntry):
             mover=self.mover or "",
             look_at=None if self.keep_looking_at is None else self.keep_looking_at.to_look_at(),
             pose=None if self.position is None else self.pose_at(self.position),
+            carrier=self.carrier or "",
             cameras={one.name: one.to_camera() for one in self.cameras or ()} or None,
         )

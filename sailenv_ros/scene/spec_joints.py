@@ -24,7 +24,7 @@ from sailenv_ros.types.validation import is_finite_number, shown_number
 
 __all__ = ["JointSpec", "joints_hold", "on_a_joint"]
 
-_JOINTS = ("hinge", "slide", "fixed")
+_JOINTS = ("hinge", "slide", "fixed", "free")
 _FOR_MOVING = ("axis", "limits", "position", "velocity", "damping", "friction", "effort")
 _PLACED_OTHERWISE = ("on", "wall", "velocity", "angular_velocity")
 
@@ -55,7 +55,9 @@ def _limits_in_order(entry: Mapping[str, Any]) -> Faults:
 
 
 def _fixed_is_fixed(entry: Mapping[str, Any]) -> Faults:
-    if entry.get("type") == "fixed":
+    if entry.get("type") == "free" and entry.get("parent") is not None:
+        yield ("parent",), "cannot be given to what moves freely"
+    if entry.get("type") in ("fixed", "free"):
         for key in _FOR_MOVING:
             if entry.get(key) is not None:
                 yield (key,), "means something only for a hinge or a slide"
@@ -66,9 +68,9 @@ class JointSpec(SceneModel):
 
     rules: ClassVar[tuple[Rule, ...]] = (_axis_has_length, _limits_in_order, _fixed_is_fixed)
 
-    type: Annotated[Literal["hinge", "slide", "fixed"], Choice(_JOINTS)] = Field(
+    type: Annotated[Literal["hinge", "slide", "fixed", "free"], Choice(_JOINTS)] = Field(
         description="hinge: turns about the axis (revolute); slide: moves along it (prismatic); "
-        "fixed: goes with its parent"
+        "fixed: goes with its parent; free: moves freely, and may carry others on joints"
     )
     parent: Name | None = optional(
         "name of the object that carries it, static or on a joint; position and "
@@ -104,8 +106,8 @@ class JointSpec(SceneModel):
 
     @property
     def moves(self) -> bool:
-        """True unless it is fixed."""
-        return self.type != "fixed"
+        """True if it is a hinge or a slide."""
+        return self.type in ("hinge", "slide")
 
     @property
     def bounds(self) -> tuple[float, float]:

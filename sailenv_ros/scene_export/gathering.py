@@ -200,11 +200,11 @@ def _body(body: Body, pieces: Sequence[ExportedPiece]) -> ExportedBody:
 
 
 def _joint(body: Body) -> BodyJoint | None:
-    if not isinstance(body, JointedBody):
+    if not isinstance(body, JointedBody) or body.joint.spec.type == "free":
         return None
     spec = body.joint.spec
     return BodyJoint(
-        type=spec.type,
+        type=body.joint.spec.type,
         parent=body.joint.parent,
         parent_from_rest=body.joint.parent_from_rest,
         axis=spec.unit_axis,

@@ -6,9 +6,10 @@ Used by the loop thread alone. Knows the world for its movers and nothing of ren
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 
-from sailenv_ros.errors import InvalidState, NameTaken, UnknownName
+from sailenv_ros.errors import InvalidRequest, InvalidState, NameTaken, UnknownName
 from sailenv_ros.simulation.agent_record import AgentRecord
 from sailenv_ros.types.agents import MAX_AGENTS, AgentPose, AgentSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -69,6 +70,13 @@ class AgentTable:
         if spec.body:
             self[spec.body]  # which must exist
             return self._begin(spec, Pose(), None, world)
+        if spec.carrier:
+            held = spec.pose or Pose()
+            at = world.frame_pose(spec.carrier).carried(held)
+            self._begin(replace(spec, cameras=None), at, None, world)
+            for camera in cameras:
+                self._begin(camera, Pose(), None, world)
+            return spec
         mover = world.mover(spec.mover)
         pose = spec.pose or mover.pose_at(world.sim_time_ns)
         gaze = None if spec.look_at is None else world.gaze(spec.look_at)
@@ -132,6 +140,11 @@ class AgentTable:
         if record.spec.extrinsics is not None:
             body = self.camera(self[record.spec.body], world).pose
             return body.carried(record.spec.extrinsics)
+        if record.spec.carrier:
+            # Where what carried it was last, once that is gone.
+            with suppress(UnknownName, InvalidRequest):
+                here = world.frame_pose(record.spec.carrier)
+                record.pose = here.carried(record.spec.pose or Pose())
         if record.spec.following:
             return world.mover(record.spec.mover).pose_at(world.sim_time_ns)
         return record.pose
@@ -260,7 +273,8 @@ class AgentTable:
                 record.spec = record.registered
                 record.pose = record.registered.pose or record.pose
             record.gaze = self._gaze_in(record, world, as_registered=as_registered)
-            if not record.spec.body and record.spec.mover not in world.movers:
+            held = record.spec.body or record.spec.carrier
+            if not held and record.spec.mover not in world.movers:
                 first = world.mover("").name
                 record.spec = replace(record.spec, mover=first)
                 record.registered = replace(record.registered, mover=first)
@@ -289,6 +303,11 @@ class AgentTable:
         if record.spec.body:
             raise InvalidState(
                 f"camera {record.spec.name!r} is fixed to its rig; move agent {record.spec.body!r}"
+            )
+        if record.spec.carrier:
+            raise InvalidState(
+                f"agent {record.spec.name!r} goes where {record.spec.carrier!r} goes, which is to "
+                "be moved"
             )
         return record
 

@@ -74,6 +74,18 @@ class ListenedSimulation(Operations):
             raise InvalidState("this is for listeners of on_step; others call contacts(seconds)")
         return self._loop.core.world.contacts(seconds)
 
+    def core_now(self) -> SimulationCore:
+        """Return the simulation's core, to be read; for listeners of `on_step` alone.
+
+        Raises
+        ------
+        InvalidState
+            If it is called from another thread than theirs, which has operations.
+        """
+        if self._loop.core is None or not self._loop.is_mine:
+            raise InvalidState("this is for listeners of on_step; others call operations")
+        return self._loop.core
+
     def joints_now(self) -> tuple[JointState, ...]:
         """Return the states of all joints; for listeners of `on_step` alone.
 

@@ -14,6 +14,7 @@ from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.fit import ObjectFit
 from sailenv_ros.assets.material_library import MaterialLibrary
 from sailenv_ros.assets.pack import AssetPack
+from sailenv_ros.assets.robots import RobotStore
 from sailenv_ros.assets.surfaces import surface_names
 from sailenv_ros.authoring.room_rules.names import FORM, PREFIX
 from sailenv_ros.authoring.viewpoints.rule_table import rule_errors
@@ -36,6 +37,7 @@ from sailenv_ros.simulation.generated_scenes import GeneratedScenes
 from sailenv_ros.simulation.light_cache import LightCache
 from sailenv_ros.simulation.models.uploaded_models import UploadedModels
 from sailenv_ros.simulation.open_packs import OpenPacks
+from sailenv_ros.simulation.robot_entries import with_full_paths
 from sailenv_ros.simulation.scene_materials import SceneMaterials
 from sailenv_ros.simulation.script.scenario import NOTHING_MORE, SceneOverlay
 from sailenv_ros.types.agents import AgentSpec
@@ -74,6 +76,7 @@ class SceneLibrary:
     ----------
     own_folder : Path
         Scenes are saved into it.
+    robots : RobotStore
     uploads : UploadedModels
     materials : SceneMaterials
     pictures : Pictures
@@ -92,8 +95,8 @@ class SceneLibrary:
         self._allow_modules = allow_modules
         self.own_folder = Path(scene_paths[0]) if scene_paths else user_scene_folder()
         self._catalogue = SceneCatalogue(dict.fromkeys((*scene_paths, user_scene_folder())))
-        self._packs = OpenPacks()
-        self._assets = AssetLibrary(self._packs.sources())
+        self._packs, self.robots = OpenPacks(), RobotStore()
+        self._assets = AssetLibrary((*self._packs.sources(), self.robots))
         self._light_cache = LightCache(wanted=baked_light, drafts=drafts, required=require_light)
         self._generated = GeneratedScenes(self._assets)
         self.uploads = UploadedModels(self._assets)
@@ -186,7 +189,7 @@ class SceneLibrary:
             self.refresh()
         path = self.path(scene)
         known = self._with_materials(self._knowledge_to_build, self.materials.beside(path))
-        spec = load_scene(path, knowledge=known)
+        spec = with_full_paths(load_scene(path, knowledge=known), path.parent)
         self.materials.note(spec.name, path)
         objects = (*spec.objects, *self._added(more.objects, spec))
         spec = spec.model_copy(update={"objects": objects})
@@ -202,6 +205,7 @@ class SceneLibrary:
             next_revision=next_revision,
             skies=self._packs.skies,
             materials=self.materials.of(spec.name),
+            robots={one.name: self.robots.find(one.file) for one in spec.robots},
         )
         try:
             self._load_light(world, str(scene))
@@ -221,7 +225,7 @@ class SceneLibrary:
     def refresh(self) -> None:
         """Take up what was built since this was made: furniture, skies and the user's packs."""
         self._packs = OpenPacks()
-        self._assets.renew(self._packs.sources())
+        self._assets.renew((*self._packs.sources(), self.robots))
 
     def load_light(self, world: World) -> None:
         """Load the light that was baked since a world was built, if there is any."""
@@ -272,17 +276,10 @@ class SceneLibrary:
         pose : Pose
         world : World
             Its categories are those that the entry may name.
-        seed : int
-            Of its behaviours' generators.
-        start_s : float
-            Simulated time at which they start [s].
+        seed, start_s
+            As of `world.build.make_placement`; see it for errors.
         shut : bool
             True keeps what opens of a piece in its body.
-
-        Raises
-        ------
-        UnknownName, InvalidEntry, AssetError, InvalidRequest
-            If it cannot be placed.
         """
         names = tuple(category.name for category in world.categories.values())
         stock = self.materials.of(world.scene)

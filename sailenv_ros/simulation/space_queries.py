@@ -52,6 +52,17 @@ class SpaceQueries:
             self._maps[body] = map_free_space(solids, body, stamp_ns=snapshot.sim_time_ns)
         return self._maps[body]
 
+    def without_robots(self, body: BodySize) -> FreeSpace:
+        """Return where a body can stand as things stand now, whatever robots stand there."""
+        world = self._present()
+        solids = (
+            solid
+            for one in world.bodies
+            if not one.placement.robot
+            for solid in solids_of_body(one)
+        )
+        return map_free_space(solids, body, stamp_ns=world.sim_time_ns)
+
     def cast_rays(self, origins: NDArray[np.float64], directions: NDArray[np.float64]) -> RayCast:
         """Return what rays (R, 3) meet first of what is drawn, as it stands now."""
         world = self._present()

@@ -72,7 +72,11 @@ class AgentSpec:
     picture : PictureSettings
         What is done to its pictures, and to nothing else.
     pose : Pose or None
-        Where it starts when it does not follow; None means at the mover.
+        Where it starts when it does not follow; None means at the mover. In the frame of its
+        carrier, if it has one.
+    carrier : str
+        Name of an object that carries it, such as a link of a robot, or of a frame upon a link;
+        empty for none.
     look_at : LookAt or None
         What it faces: from the start on in what is registered, now in what is announced.
     cameras : mapping of str to RigCamera, or None
@@ -94,12 +98,15 @@ class AgentSpec:
     look_at: LookAt | None = None
     cameras: Mapping[str, RigCamera] | None = field(default=None, hash=False)
     extrinsics: Pose | None = None
+    carrier: str = ""
 
     def __post_init__(self) -> None:
         checked_agent_name(self.name, carried=self.extrinsics is not None)
         object.__setattr__(self, "views", checked_views(self.views, supported=RENDERED_VIEWS))
         RATE.number("rate_hz", self.rate_hz)
         checked_flag("following", self.following)
+        if self.carrier:
+            self._require_held()
         near = self.intrinsics.near_m
         if not (is_finite_number(self.depth_range_m) and self.depth_range_m > near):
             raise InvalidRequest(
@@ -143,6 +150,15 @@ class AgentSpec:
             depth_range_m=self.depth_range_m,
             picture=self.picture,
         )
+
+    def _require_held(self) -> None:
+        """Refuse what an object carries and a mover, or a look-at constraint, moves too."""
+        for what in ("mover", "look_at", "extrinsics"):
+            if getattr(self, what):
+                accepted = f"left out: {self.name!r} goes where {self.carrier!r} goes"
+                raise InvalidRequest(what, getattr(self, what), accepted)
+        object.__setattr__(self, "following", False)
+        object.__setattr__(self, "pose", self.pose or Pose())
 
     def _require_carried(self) -> None:
         """Refuse a camera of a rig that would go or look somewhere else than its body does."""

@@ -37,6 +37,8 @@ class Entity:
         Of that frame's origin, world axes [m/s].
     angular_velocity : (3,) tuple of float
         World axes [rad/s].
+    linear_acceleration, angular_acceleration : (3,) tuple of float
+        Of the same in the last step, world axes [m/s²], [rad/s²].
     sim_time_ns : int
         The instant [ns].
     """
@@ -51,6 +53,8 @@ class Entity:
     pose: Pose
     linear_velocity: Vector3
     angular_velocity: Vector3
+    linear_acceleration: Vector3
+    angular_acceleration: Vector3
     sim_time_ns: int
 
 

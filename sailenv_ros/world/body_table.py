@@ -5,12 +5,12 @@ Knows neither time nor lights: what is changed here, `World` tells.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest, NameTaken, PhysicsError
+from sailenv_ros.errors import InvalidRequest, NameTaken
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.validation import is_integer
@@ -21,6 +21,7 @@ from sailenv_ros.world.instance_ids import InstanceIds
 from sailenv_ros.world.joint_table import JointTable
 from sailenv_ros.world.jointed_bodies import make_bodies, make_body
 from sailenv_ros.world.labelled_pieces import LabelledPiece, find_piece, pieces_of, states_of
+from sailenv_ros.world.last_poses import LastPoses
 from sailenv_ros.world.person_body import deformations_of, skeletons_of
 from sailenv_ros.world.placement import Placement
 
@@ -62,7 +63,7 @@ class BodyTable:
         self._parts: dict[int, tuple[int, ...]] = {}
         self._pieces: tuple[LabelledPiece, ...] | None = None
         self._ids = InstanceIds()
-        self._last_poses: dict[int, NDArray[np.float64]] = {}
+        self._last_poses = LastPoses()
         listed = list(placements)
         for placement in (one for one in listed if one.outside is None):
             self._add_body(placement, waits=placement.name in waiting)
@@ -148,11 +149,7 @@ class BodyTable:
 
         Of one that has not been there yet, where it will be.
         """
-        if body_id in self._bodies:
-            return self._bodies[body_id].world_from_body()
-        if body_id in self._last_poses:
-            return self._last_poses[body_id]
-        return self.waiting[body_id].pose.matrix()
+        return self._last_poses.of(body_id, self._bodies.get(body_id), self.waiting)
 
     @property
     def firsts(self) -> Mapping[str, Body]:
@@ -188,45 +185,58 @@ class BodyTable:
         return np.array([histories[piece.body_id] for piece in self.pieces], dtype=np.int64)
 
     def add(self, placement: Placement) -> int:
-        """Put a body into the engine; return its instance id. Its parts get the next ones.
+        """Put a body into the engine; return its instance id. See `add_all`."""
+        return self.add_all((placement,))[0]
+
+    def add_all(self, placements: Sequence[Placement]) -> tuple[int, ...]:
+        """Put bodies into the engine, all of them or none; return their ids.
+
+        Their parts get the next ones.
 
         Raises
         ------
         NameTaken, InvalidRequest
             If there is one of that name, or no id is left.
         """
-        self._ids.require(1 + len(placement.asset.parts))
-        body_id = self._add_body(placement)
+        self._ids.require(sum(1 + len(placement.asset.parts) for placement in placements))
+        added: list[int] = []
         try:
+            for placement in placements:
+                added.append(self._add_body(placement))
             self.joints.arrange(self)
         except BaseException:
-            self._bodies.pop(body_id).remove()
-            del self._ids.histories[body_id], self._parts[body_id]
-            self._ids.last -= 1
+            for body_id in reversed(added):
+                self._bodies.pop(body_id).remove()
+                del self._ids.histories[body_id], self._parts[body_id]
+                self._ids.last -= 1
             raise
-        self._number_parts(body_id)
-        return body_id
+        for body_id in added:
+            self._number_parts(body_id)
+        return tuple(added)
+
+    def remove_all(self, numbers: Sequence[int]) -> None:
+        """Take bodies out of the engine that hang together, and wake what rests upon them."""
+        for number in numbers:
+            self._take_out(number).remove()
+        self._forget(numbers)
 
     def remove(self, instance_id: int) -> None:
         """Take a body out of the engine, and wake what rests upon it."""
         if instance_id in self.waiting:
-            self._note_last_pose(instance_id)
+            self._last_poses.note(instance_id, None, self.waiting)
             self.waiting.forget(instance_id)
+            self._forget((instance_id,))
         else:
             self.joints.require_nothing_on(self[instance_id], "to be removed")
-            self._take_out(instance_id).remove()
-        del self._ids.histories[instance_id], self._parts[instance_id]
-        self._pieces = None
-        self.joints.arrange(self)
+            self.remove_all((instance_id,))
 
     def require_free(self, instance_id: int) -> None:
-        """Refuse an object that is on a joint or carries one; see `World.require_free`."""
+        """Refuse an object that is on a joint or carries one."""
         if instance_id in self.waiting:
             return
-        body = self[instance_id]
+        body, what = self[instance_id], "object that comes and goes"
         if body.placement.joint is not None:
-            name = body.placement.name
-            raise InvalidRequest("object that comes and goes", name, "one that is not on a joint")
+            raise InvalidRequest(what, body.placement.name, "one that is not on a joint")
         self.joints.require_nothing_on(body, "that comes and goes")
 
     def leave(self, instance_id: int) -> None:
@@ -249,10 +259,7 @@ class BodyTable:
     def rebuild(self, instance_id: int, placement: Placement) -> None:
         """Make of a body what another placement says; it keeps its id, its place, its motion.
 
-        Raises
-        ------
-        NameTaken, InvalidRequest
-            If another has that name, or it cannot be such a body; it is as it was then.
+        See `World.replace_body` for errors.
         """
         old = self[instance_id]
         if placement.name != old.placement.name:
@@ -273,14 +280,9 @@ class BodyTable:
         self._pieces = None
 
     def replace_room(self, placements: Iterable[Placement], without: Collection[int] = ()) -> None:
-        """Exchange all parts of the room; a part of the same name keeps its id.
+        """Exchange all parts of the room, and take out others by their ids.
 
-        Parameters
-        ----------
-        placements : iterable of Placement
-            The parts that there shall be.
-        without : collection of int
-            Ids of objects that go with the present parts.
+        A part of the same name keeps its id.
 
         Raises
         ------
@@ -296,7 +298,7 @@ class BodyTable:
         self._ids.require(sum(placement.name not in parts for placement in wanted))
         made = make_bodies(self._client, wanted)
         for id_ in leaving:
-            self._note_last_pose(id_)
+            self._last_poses.note(id_, self._bodies[id_], self.waiting)
             self._bodies[id_].remove()
         for body in made:
             id_ = parts.get(body.placement.name) or self._ids.take(1)[0]
@@ -334,10 +336,16 @@ class BodyTable:
         self.reset_motion_history(body_id)
         return body_id
 
+    def _forget(self, numbers: Sequence[int]) -> None:
+        for number in numbers:
+            del self._ids.histories[number], self._parts[number]
+        self._pieces = None
+        self.joints.arrange(self)
+
     def _take_out(self, body_id: int) -> Body:
         gone = self[body_id]
         self.wake_neighbours(gone)
-        self._note_last_pose(body_id)
+        self._last_poses.note(body_id, gone, self.waiting)
         return self._bodies.pop(body_id)
 
     def _number_parts(self, body_id: int) -> None:
@@ -345,13 +353,6 @@ class BodyTable:
         placement = self.waiting[body_id] if waits else self._bodies[body_id].placement
         self._parts[body_id] = self._ids.take(len(placement.asset.parts))
         self._pieces = None
-
-    def _note_last_pose(self, body_id: int) -> None:
-        """Keep where a body is that is about to go; where it was placed if that is not finite."""
-        try:
-            self._last_poses[body_id] = self.last_world_from_body(body_id).copy()
-        except PhysicsError:
-            self._last_poses[body_id] = self._bodies[body_id].entry_pose.matrix()
 
     def _require_free_name(self, name: str) -> None:
         if any(body.placement.name == name for body in self) or name in self.waiting.names():

@@ -22,11 +22,13 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.lights import Environment
 from sailenv_ros.types.model import Asset
+from sailenv_ros.types.robots import RobotModel
 from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.mover_motion import WaypointTrack
 from sailenv_ros.world.opening_pieces import as_placed, moving_entries
 from sailenv_ros.world.placement import JointPlacement
+from sailenv_ros.world.robot_placements import RobotPlacement, link_placements
 from sailenv_ros.world.world import World
 
 __all__ = ["build_world", "make_environment", "make_placement", "room_placements"]
@@ -42,6 +44,7 @@ def build_world(
     next_revision: Callable[[], int] | None = None,
     skies: Mapping[str, Path] | None = None,
     materials: MaterialLibrary | None = None,
+    robots: Mapping[str, RobotModel] | None = None,
 ) -> World:
     """Build the world of a scene.
 
@@ -59,6 +62,8 @@ def build_world(
         Files of the photographed skies by name.
     materials : MaterialLibrary or None
         Where materials and pictures come from; None knows no pictures.
+    robots : mapping of str to RobotModel or None
+        What the scene's robots are, by their names.
 
     Raises
     ------
@@ -79,6 +84,9 @@ def build_world(
     environment = make_environment(spec.environment, skies or {})
     daylight = daylight_of(lights, environment)
     parts = list(room_placements(spec.room, table, found, daylight))
+    machines = [
+        RobotPlacement(spec=entry, model=(robots or {})[entry.name]) for entry in spec.robots
+    ]
     world = World(
         scene=spec.name,
         epoch=epoch,
@@ -98,7 +106,9 @@ def build_world(
             ),
             # After the objects, whose ids do not depend on how doors are made.
             *(part for part in parts if part.joint is not None),
+            *(link for machine in machines for link in link_placements(machine, table)),
         ],
+        robots=machines,
         waiting=spec.lesson_objects.union(e.name for e in spec.objects if e.appear),
         movers=[_mover(entry) for entry in spec.all_movers],
         categories=table,

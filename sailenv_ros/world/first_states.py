@@ -45,4 +45,5 @@ class FirstStates:
             (id_, body.joint.spec.start)
             for id_, body in self._bodies.items()
             if id_ in self._poses and isinstance(body, JointedBody) and body.joint.spec.moves
+            if not body.placement.robot
         )

@@ -140,14 +140,23 @@ def _parent(body: JointedBody, by_name: Mapping[str, Body]) -> Body | None:
 
 
 def _groups(parents: Mapping[JointedBody, Body | None]) -> Iterator[tuple[JointedBody, ...]]:
-    """Yield what hangs together, parents before what they carry."""
+    """Yield what hangs together, each followed by all that it carries: the engine's own order.
+
+    It numbers links so, whatever the order in which it is told of them.
+    """
+    carried: dict[Body | None, list[JointedBody]] = {}
+    for body, parent in parents.items():
+        carried.setdefault(parent, []).append(body)
     found: set[JointedBody] = set()
     for root, parent in parents.items():
         if isinstance(parent, JointedBody):
             continue
-        group = [root]
-        for body in group:  # which grows meanwhile
-            group += [other for other, carrier in parents.items() if carrier is body]
+        group: list[JointedBody] = []
+        waiting = [root]
+        while waiting:
+            body = waiting.pop()
+            group.append(body)
+            waiting += reversed(carried.get(body, []))
         found.update(group)
         yield tuple(group)
     for body in parents:
@@ -162,5 +171,7 @@ def _place(parent: Body | None, places: Mapping[JointedBody, int]) -> int:
 
 
 def _rest(root: JointedBody, parent: Body | None) -> Pose:
+    if root.is_free:
+        return root.rest_pose()
     rest = root.joint.parent_from_rest
     return rest if parent is None else composed(parent.pose(), rest)

@@ -1,24 +1,23 @@
-"""Objects on joints as one body of the engine: an anchor that stands still, and a link for each.
+"""Objects on joints as one body of the engine: what carries them all, and a link for each.
 
-Joints are exact: the engine knows their positions, and poses follow from these alone (see
-`kinematics`). What friction holds keeps the very same position.
+That is an anchor that stands still, or the first object, where it moves freely. Joints are exact:
+the engine knows their positions, and poses follow from these alone (see `kinematics`). What
+friction holds keeps the very same position.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from sailenv_ros.errors import PhysicsError
-from sailenv_ros.types.geometry import Pose
-from sailenv_ros.world.body_creation import ROLLING_FRICTION
-from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
-from sailenv_ros.world.collision import build_collision
+from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose, invert
+from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
+from sailenv_ros.world.joint_links import STANDING, JointDrive, JointLink, at_origin
 from sailenv_ros.world.kinematics import composed
-from sailenv_ros.world.placement import JointPlacement, Placement
+from sailenv_ros.world.tree_building import build_tree, set_dynamics
 
-__all__ = ["JointTree", "JointLink"]
+__all__ = ["JointTree"]
 
 HELD = 1e-9
 """Motion in one step below which a joint is held by its friction and does not move [rad], [m]."""
@@ -30,41 +29,10 @@ engine's solver leaves such speeds where joints depend on one another."""
 SPARE = 0.99
 """Share of the friction's torque below which there is torque to spare."""
 
-UNLIMITED = (1.0, -1.0)
-"""The engine takes limits in the wrong order for none."""
+GEAR_ERP = 0.5
+"""Share of the error between coupled joints that a step takes away."""
 
-LIMIT_FORCE = 1e7
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JointLink:
-    """One object of a tree.
-
-    Attributes
-    ----------
-    placement : Placement
-        With a joint.
-    parent : int
-        Place in the tree of the link that carries it; -1: the anchor.
-    mass_kg : float
-    centre_m : (3,) tuple of float
-        Centre of mass in the object's frame, scale included.
-    position, velocity : float
-        Of the joint at the start.
-    """
-
-    placement: Placement
-    parent: int
-    mass_kg: float
-    centre_m: tuple[float, float, float]
-    position: float
-    velocity: float
-
-    @property
-    def joint(self) -> JointPlacement:
-        """The joint on which it moves."""
-        assert self.placement.joint is not None
-        return self.placement.joint
+GEAR_FORCE = 1e4
 
 
 class JointTree:
@@ -89,15 +57,49 @@ class JointTree:
     ) -> None:
         self._client = client
         self._links = tuple(links)
+        first = self._links[0]
+        self._is_free = first.joint.spec.type == "free"
+        # In the engine, links are counted from 0 without what carries them all.
+        self._shift = 1 if self._is_free else 0
+        self._centre = Pose(first.centre_m, first.axes_xyzw)
+        self._read: tuple[object, Pose] | None = None
+        self._gears: list[int] = []
+        self._motors: dict[int, JointDrive] = {}
+        self._rolled: dict[int, tuple[float, float]] = {}
         self._driven: set[int] = set()
         self._was_driven: set[int] = set()
         self._last = [(0.0, 0.0)] * len(self._links)
-        self.bullet_id = self._build(world_from_rest)
+        self.bullet_id = build_tree(client, self._links, world_from_rest)
         for number, link in enumerate(self._links):
-            self._set_dynamics(number, link)
+            set_dynamics(client, self.bullet_id, self.link_of(number), link)
             if link.joint.spec.moves:
                 self.set(number, link.position, link.velocity)
             self.release(number)
+        if self._is_free:
+            self._client.resetBaseVelocity(self.bullet_id, *first.motion)
+
+    def link_of(self, number: int) -> int:
+        """Return the engine's number of the link at a place in the tree."""
+        return number - self._shift
+
+    def free_pose(self) -> Pose:
+        """Return where the first object is, which moves freely; the same while it rests.
+
+        Raises
+        ------
+        PhysicsError
+            If that is no longer finite.
+        """
+        read = self._client.getBasePositionAndOrientation(self.bullet_id)
+        if self._read is None or self._read[0] != read:
+            if not all(map(math.isfinite, (*read[0], *read[1]))):
+                name = self._links[0].placement.name
+                raise PhysicsError(f"the motion of {name!r} is no longer finite; reset the scene")
+            limit = POSITION_LIMIT_M
+            x, y, z = (min(max(value, -limit), limit) for value in read[0])
+            inertial = Pose.from_matrix(invert(self._centre.matrix()))
+            self._read = read, composed(Pose((x, y, z), read[1]), inertial)
+        return self._read[1]
 
     def state(self, number: int) -> tuple[float, float]:
         """Return position [rad] or [m] and velocity of a link's joint.
@@ -110,7 +112,9 @@ class JointTree:
         link = self._links[number]
         if not link.joint.spec.moves:
             return 0.0, 0.0
-        position, velocity = self._client.getJointState(self.bullet_id, number)[:2]
+        if number in self._rolled:
+            return self._rolled[number]
+        position, velocity = self._client.getJointState(self.bullet_id, self.link_of(number))[:2]
         if not (math.isfinite(position) and math.isfinite(velocity)):
             name = link.placement.name
             raise PhysicsError(f"the motion of {name!r} is no longer finite; reset the scene")
@@ -118,7 +122,7 @@ class JointTree:
 
     def set(self, number: int, position: float, velocity: float = 0.0) -> None:
         """Put a joint somewhere [rad] or [m], and let it move with a velocity from there."""
-        self._client.resetJointState(self.bullet_id, number, position, velocity)
+        self._client.resetJointState(self.bullet_id, self.link_of(number), position, velocity)
         self._last[number] = (position, velocity)
 
     def drive(self, number: int, velocity: float) -> None:
@@ -128,10 +132,75 @@ class JointTree:
         self.wake()
 
     def release(self, number: int) -> None:
-        """Leave a joint to its friction."""
+        """Leave a joint to its motor, if that follows a target, else to its friction."""
         self._driven.discard(number)
         self._was_driven.discard(number)
+        if number in self._motors:
+            self.follow(number, self._motors[number])
+            return
         self._motor(number, 0.0, self._links[number].joint.spec.friction)
+
+    def roll(self, number: int, speed: float) -> None:
+        """Let a wheel turn with a speed [rad/s] that nothing changes.
+
+        In the engine it stands still: its shape, a polygon there, would shake what it carries.
+        """
+        if number not in self._rolled:
+            angle = self.state(number)[0]
+            self._rolled[number] = angle, 0.0
+            held = JointDrive(mode="position", target=angle, gain=60.0, effort=1e4, speed=10.0)
+            self.follow(number, held)
+        self._rolled[number] = self._rolled[number][0], speed
+
+    def follow(self, number: int, drive: JointDrive) -> None:
+        """Let a joint's motor follow a target until something else is asked for."""
+        self._motors[number] = drive
+        link, kinds = self.link_of(number), self._client.constants
+        friction = self._links[number].joint.spec.friction
+        if drive.mode == "position":
+            self._client.setJointMotorControl2(
+                self.bullet_id,
+                link,
+                kinds.POSITION_CONTROL,
+                targetPosition=drive.target,
+                targetVelocity=0.0,
+                positionGain=min(drive.gain / STEPS_PER_SECOND, 1.0),
+                velocityGain=1.0,
+                force=drive.effort,
+                maxVelocity=drive.speed,
+            )
+        elif drive.mode == "velocity":
+            self._motor(number, drive.target, drive.effort)
+        else:
+            self._motor(number, 0.0, friction)
+        self.wake()
+
+    def effort(self, number: int) -> float:
+        """Return what a joint's motor exerted in the last step [N m] or [N]."""
+        drive = self._motors.get(number)
+        told = drive.target if drive is not None and drive.mode == "effort" else 0.0
+        return told + float(self._client.getJointState(self.bullet_id, self.link_of(number))[3])
+
+    def couple(self, leader: int, follower: int, multiplier: float, offset: float) -> None:
+        """Let a joint go with another: position = multiplier · the other's + offset."""
+        gear = self._client.createConstraint(
+            self.bullet_id,
+            self.link_of(leader),
+            self.bullet_id,
+            self.link_of(follower),
+            self._client.constants.JOINT_GEAR,
+            (1.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+        )
+        self._client.changeConstraint(
+            gear,
+            gearRatio=-multiplier,
+            relativePositionTarget=offset,
+            erp=GEAR_ERP,
+            maxForce=GEAR_FORCE,
+        )
+        self._gears.append(gear)
 
     def wake(self) -> None:
         """Let physics move it again, if it sleeps."""
@@ -139,8 +208,13 @@ class JointTree:
         self._client.changeDynamics(self.bullet_id, LINK_OF_BASE, activationState=state)
 
     def put(self, world_from_rest: Pose) -> None:
-        """Move all of it: the first link's object is there while its joint's position is 0."""
-        at = _at_origin(world_from_rest, self._links[0].joint)
+        """Move all of it: the first link's object is there while its joint's position is 0.
+
+        What moves freely is stopped.
+        """
+        if self._is_free:
+            self._client.resetBaseVelocity(self.bullet_id, *STANDING)
+        at = self._placed(world_from_rest)
         self._client.resetBasePositionAndOrientation(
             self.bullet_id, at.position_m, at.orientation_xyzw
         )
@@ -148,6 +222,14 @@ class JointTree:
 
     def before_step(self) -> None:
         """Leave joints to their friction that were driven in the last step and are no more."""
+        for number, drive in self._motors.items():
+            if drive.mode == "effort" and drive.target:
+                self._client.setJointMotorControl2(
+                    self.bullet_id,
+                    self.link_of(number),
+                    self._client.constants.TORQUE_CONTROL,
+                    force=drive.target,
+                )
         for number in sorted(self._was_driven - self._driven):
             self.release(number)
 
@@ -158,11 +240,16 @@ class JointTree:
             if not link.joint.spec.moves:
                 continue
             position, velocity = self.state(number)
+            if number in self._rolled:
+                self._rolled[number] = position + velocity / STEPS_PER_SECOND, velocity
+                moved |= velocity != 0.0
+                continue
             before, speed = self._last[number]
             if position == before and velocity == speed:
                 continue
             low, high = link.joint.spec.bounds
-            if number not in self._driven and self._is_held(number, position - before, velocity):
+            free = number not in self._driven and number not in self._motors
+            if free and self._is_held(number, position - before, velocity):
                 position, velocity = before, 0.0
                 self.set(number, position)
             elif not low <= position <= high:
@@ -179,112 +266,40 @@ class JointTree:
             return True
         if abs(velocity) > STUCK:
             return False
-        torque = float(self._client.getJointState(self.bullet_id, number)[3])
+        torque = self.effort(number)
         return abs(torque) < SPARE * self._links[number].joint.spec.friction
 
     def ignore(self, other: int) -> None:
         """Let nothing of it collide with the base of another body of the engine."""
         for number in range(len(self._links)):
-            self._client.setCollisionFilterPair(self.bullet_id, other, number, LINK_OF_BASE, 0)
+            link = self.link_of(number)
+            self._client.setCollisionFilterPair(self.bullet_id, other, link, LINK_OF_BASE, 0)
+
+    def let_pass(self, first: int, second: int) -> None:
+        """Let two of its own links not collide."""
+        one, two = self.link_of(first), self.link_of(second)
+        self._client.setCollisionFilterPair(self.bullet_id, self.bullet_id, one, two, 0)
 
     def remove(self) -> None:
         """Take it out of the engine."""
+        for gear in self._gears:
+            self._client.removeConstraint(gear)
         self._client.removeBody(self.bullet_id)
 
     # -- inside ----------------------------------------------------------------------------
 
-    def _build(self, world_from_rest: Pose) -> int:
-        client, kinds = self._client, self._client.constants
-        joint_types = {
-            "hinge": kinds.JOINT_REVOLUTE,
-            "slide": kinds.JOINT_PRISMATIC,
-            "fixed": kinds.JOINT_FIXED,
-        }
-        shapes = [
-            build_collision(
-                client,
-                link.placement.asset.collision,
-                scale=link.placement.scale,
-                # The frame of a link is at its joint's origin.
-                centre_of_mass_m=link.joint.spec.origin,
-                name=link.placement.name,
-            )
-            for link in self._links
-        ]
-        offsets = [self._offset(link) for link in self._links]
-        at = _at_origin(world_from_rest, self._links[0].joint)
-        count = len(self._links)
-        body = client.createMultiBody(
-            baseMass=0.0,
-            baseCollisionShapeIndex=-1,
-            basePosition=at.position_m,
-            baseOrientation=at.orientation_xyzw,
-            linkMasses=[link.mass_kg for link in self._links],
-            linkCollisionShapeIndices=shapes,
-            linkVisualShapeIndices=[-1] * count,
-            linkPositions=[offset.position_m for offset in offsets],
-            linkOrientations=[offset.orientation_xyzw for offset in offsets],
-            linkInertialFramePositions=[
-                [c - o for c, o in zip(link.centre_m, link.joint.spec.origin, strict=True)]
-                for link in self._links
-            ],
-            linkInertialFrameOrientations=[(0.0, 0.0, 0.0, 1.0)] * count,
-            linkParentIndices=[link.parent + 1 for link in self._links],
-            linkJointTypes=[joint_types[link.joint.spec.type] for link in self._links],
-            linkJointAxis=[link.joint.spec.unit_axis for link in self._links],
-        )
-        return int(body)
-
-    def _offset(self, link: JointLink) -> Pose:
-        """Return where a link's frame is in that of its parent, at the joint's position 0."""
-        if link.parent < 0:
-            return Pose()
-        ox, oy, oz = self._links[link.parent].joint.spec.origin
-        here = _at_origin(link.joint.parent_from_rest, link.joint)
-        x, y, z = here.position_m
-        return Pose((x - ox, y - oy, z - oz), here.orientation_xyzw)
-
-    def _set_dynamics(self, number: int, link: JointLink) -> None:
-        spec, placement = link.joint.spec, link.placement
-        self._client.changeDynamics(
-            self.bullet_id,
-            number,
-            lateralFriction=placement.friction,
-            restitution=placement.restitution,
-            linearDamping=0.0,
-            angularDamping=0.0,
-            rollingFriction=ROLLING_FRICTION,
-            spinningFriction=ROLLING_FRICTION,
-            jointDamping=spec.damping,
-        )
-        low, high = UNLIMITED if spec.limits is None else spec.limits
-        if spec.moves:
-            self._client.changeDynamics(
-                self.bullet_id,
-                number,
-                jointLowerLimit=low,
-                jointUpperLimit=high,
-                jointLimitForce=LIMIT_FORCE,
-            )
-        self._client.changeDynamics(
-            self.bullet_id,
-            LINK_OF_BASE,
-            linearDamping=0.0,
-            angularDamping=0.0,
-            activationState=self._client.constants.ACTIVATION_STATE_ENABLE_SLEEPING,
-        )
+    def _placed(self, world_from_rest: Pose) -> Pose:
+        """Return where what carries all is: principal axes of what is free, or the anchor."""
+        if self._is_free:
+            return composed(world_from_rest, self._centre)
+        return at_origin(world_from_rest, self._links[0].joint)
 
     def _motor(self, number: int, velocity: float, force: float) -> None:
         if self._links[number].joint.spec.moves:
             self._client.setJointMotorControl2(
                 self.bullet_id,
-                number,
+                self.link_of(number),
                 self._client.constants.VELOCITY_CONTROL,
                 targetVelocity=velocity,
                 force=force,
             )
-
-
-def _at_origin(pose: Pose, joint: JointPlacement) -> Pose:
-    """Return the frame of a link: that of its object, at the joint's origin."""
-    return composed(pose, Pose(joint.spec.origin))

@@ -17,9 +17,10 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.joints import JointState
 from sailenv_ros.types.validation import checked_number
 from sailenv_ros.world import actuation
-from sailenv_ros.world.bodies import NOT_THERE, Body, FrustumPlanes, Vector3
+from sailenv_ros.world.bodies import NOT_THERE, Body, FrustumPlanes, Vector3, vector3
 from sailenv_ros.world.bullet import BulletClient
-from sailenv_ros.world.joint_tree import JointLink, JointTree
+from sailenv_ros.world.joint_links import STANDING, JointLink
+from sailenv_ros.world.joint_tree import JointTree
 from sailenv_ros.world.kinematics import Twist, composed, cross, link_pose, link_velocity
 from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.placement import JointPlacement, Placement
@@ -91,19 +92,36 @@ class JointedBody(Body):
             centre_m=self._centre,
             position=position,
             velocity=velocity,
+            motion=self._motion_of_centre() if self.is_free else STANDING,
         )
+
+    def _motion_of_centre(self) -> tuple[Vector3, Vector3]:
+        if self.tree is None:
+            return self.placement.linear_velocity, self.placement.angular_velocity
+        linear, angular = actuation.velocity(self._client, self._id)
+        return vector3(linear), vector3(angular)
 
     def hang(self, tree: JointTree, number: int, parent: Body | None) -> None:
         """Become a link of a tree; `parent` carries it, None is the world."""
         self.tree, self._number, self.parent = tree, number, parent
         self._resting = self._posed = None
         self._id = tree.bullet_id
-        self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, number)[2])
+        self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, self.link)[2])
 
     @property
     def link(self) -> int:
         """PyBullet's number of its link."""
+        return self._number if self.tree is None else self.tree.link_of(self._number)
+
+    @property
+    def place(self) -> int:
+        """Place in its tree."""
         return self._number
+
+    @property
+    def is_free(self) -> bool:
+        """True if nothing holds it: it is the first of its tree, and moves as physics has it."""
+        return self.joint.spec.type == "free"
 
     def joint_state(self) -> tuple[float, float]:
         """Return position and velocity of its joint [rad, rad/s] or [m, m/s]."""
@@ -111,6 +129,8 @@ class JointedBody(Body):
 
     def rest_pose(self) -> Pose:
         """Return where it is while its joint's position is 0, and those above stay."""
+        if self.is_free and self.tree is not None:
+            return self.tree.free_pose()
         if self.parent is None:
             return self.joint.parent_from_rest
         carrier = self.parent.pose()
@@ -139,6 +159,10 @@ class JointedBody(Body):
 
     def twist(self) -> Twist:
         """Return the velocity of its frame's origin [m/s] and the angular one [rad/s]."""
+        if self.is_free and self.tree is not None:
+            linear, angular = actuation.velocity(self._client, self._id)
+            arm = self.world_from_body()[:3, :3] @ np.asarray(self._centre)
+            return linear - cross(angular, arm), angular
         parent, rate = self.parent, self.joint_state()[1]
         carried = parent.twist() if isinstance(parent, JointedBody) else _STILL
         if not rate and carried is _STILL:
@@ -162,7 +186,7 @@ class JointedBody(Body):
     def described_joint(self, instance_id: int) -> JointState | None:
         """Return all that clients may know of its joint; None of one that is fixed."""
         spec = self.joint.spec
-        if spec.type == "fixed":
+        if spec.type != "hinge" and spec.type != "slide":
             return None
         position, velocity = self.joint_state()
         low, high = spec.bounds
@@ -192,7 +216,9 @@ class JointedBody(Body):
         assert self.tree is not None
         spec, name = self.joint.spec, self.placement.name
         if not spec.moves:
-            raise InvalidRequest("object", name, "one on a hinge or a slide; this one is fixed")
+            raise InvalidRequest(
+                "object", name, f"one on a hinge or a slide; this one is {spec.type}"
+            )
         low, high = spec.bounds
         unit = "rad" if spec.type == "hinge" else "m"
         what = f"position of {name!r}"
@@ -220,14 +246,19 @@ class JointedBody(Body):
         Raises
         ------
         InvalidRequest
-            Always: its joint alone moves it.
+            If its joint alone moves it.
         """
+        if self.is_free:
+            return
         accepted = "one without a joint; set_joint_position moves this one"
         raise InvalidRequest("object to be moved", self.placement.name, accepted)
 
     def put(self, pose: Pose) -> None:
-        """Refuse to put it elsewhere; see `require_free`."""
+        """Set its pose and stop it, with all that it carries; see `require_free`."""
         self.require_free()
+        assert self.tree is not None
+        self.arranged = False
+        self.tree.put(pose)
 
     def wake(self) -> None:
         """Let physics move it again, if it has come to rest and sleeps."""
@@ -270,16 +301,19 @@ class JointedBody(Body):
         if rate is not None and self.joint.spec.moves:
             self.tree.drive(self._number, rate)
         if action.force_n is not None:
-            actuation.push(self._client, self._id, action.force_n, link=self._number)
+            actuation.push(self._client, self._id, action.force_n, link=self.link)
         if action.torque_nm is not None:
             frame = self._client.constants.WORLD_FRAME
-            self._client.applyExternalTorque(self._id, self._number, action.torque_nm, frame)
+            self._client.applyExternalTorque(self._id, self.link, action.torque_nm, frame)
 
     def rebuilt(self, placement: Placement) -> Body:
         """Make the body that another placement says, where this one is; no tree has it yet."""
         if placement.joint is None:
             accepted = "one that keeps its joint"
             raise InvalidRequest("change of object", self.placement.name, accepted)
+        if self.is_free:
+            rest = replace(placement.joint, parent_from_rest=self.pose())
+            placement = replace(placement, joint=rest)
         new = JointedBody(self._client, placement)
         new._at = self.joint_state()
         new._behaviours = self._behaviours

@@ -68,6 +68,12 @@ class Placement:
         What a scene file says of it; None for a part of a room.
     outside : Outside or None
         Of what lies outside a room: seen as the sky is, and no part of its light.
+    robot : str
+        Name of the robot whose link it is; empty if it is none.
+    collides_with_itself : bool
+        True if what hangs together with it on joints may collide.
+    spinning_friction : float
+        Torque against spinning over the force that presses [m]; 0 takes that of all objects.
     """
 
     name: str
@@ -87,6 +93,9 @@ class Placement:
     joint: JointPlacement | None = None
     entry: ObjectSpec | None = None
     outside: Outside | None = None
+    robot: str = ""
+    collides_with_itself: bool = False
+    spinning_friction: float = 0.0
 
     def __post_init__(self) -> None:
         hollow = any(isinstance(shape, TriangleShape) for shape in self.asset.collision)

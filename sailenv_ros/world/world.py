@@ -25,7 +25,7 @@ from sailenv_ros.world.bodies import Placement
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover_motion import MoverCommand
-from sailenv_ros.world.world_state import WorldState
+from sailenv_ros.world.world_robots import WorldRobots
 
 __all__ = ["MAX_VELOCITY_M_S", "MAX_VELOCITY_RAD_S", "World"]
 
@@ -35,7 +35,7 @@ MAX_VELOCITY_RAD_S = 1.7e3
 NOT_MOVING = (0.0, 0.0, 0.0)
 
 
-class World(WorldState):
+class World(WorldRobots):
     """The live state of one scene, and all that changes it; see `WorldState` for its parameters."""
 
     @property
@@ -88,7 +88,14 @@ class World(WorldState):
         return instance_id
 
     def despawn(self, instance_id: int) -> None:
-        """Take an object out of the world with its parts; their ids are not used again."""
+        """Take an object out of the world with its parts; their ids are not used again.
+
+        Raises
+        ------
+        InvalidRequest
+            If it is a link of a robot, or carries something on a joint.
+        """
+        self._require_no_link(instance_id, "to be removed")
         for part in self._opening_parts(instance_id):
             self._bodies.remove(part)
         self._bodies.remove(instance_id)
@@ -118,7 +125,10 @@ class World(WorldState):
             If it cannot be such an object; it is as it was then.
         """
         old = self.body(instance_id)
+        if placement.name != old.placement.name:
+            self._require_no_link(instance_id, "to be renamed")
         self._bodies.rebuild(instance_id, placement)
+        self.robots.renew()
         if placement.scale != old.placement.scale:
             self._bodies.reset_motion_history(instance_id)
             self._shown.forget_charts(self._bodies.ids_of(instance_id))
@@ -217,6 +227,8 @@ class World(WorldState):
                 )
         for id_, position in self._first.turned():
             self.set_joint(id_, position)
+        for number in self.robots.put_back():
+            self._bodies.reset_motion_history(number)
 
     def joint(self, instance_id: int) -> JointState | None:
         """Return the state of an object's joint; None where it has none that moves."""
@@ -241,6 +253,9 @@ class World(WorldState):
         if not isinstance(body, JointedBody):
             names = [state.name for state in self.joints()]
             accepted = f"one on a joint: {', '.join(names[:20]) or 'this scene has none'}"
+            raise InvalidRequest("object", body.placement.name, accepted)
+        if body.placement.robot:
+            accepted = "no link of a robot: drive_joints and put_joints move these"
             raise InvalidRequest("object", body.placement.name, accepted)
         body.set_joint(position, seconds, self._step / STEPS_PER_SECOND)
         self._bodies.wake_neighbours(body)

@@ -21,23 +21,20 @@ from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClien
 from sailenv_ros.world.contact_log import ContactLog
 from sailenv_ros.world.contents_maker import ContentsMaker
 from sailenv_ros.world.crowd import Crowd
+from sailenv_ros.world.engine_settings import configure
 from sailenv_ros.world.first_states import FirstStates
 from sailenv_ros.world.inactive_objects import InactiveObjects
 from sailenv_ros.world.look_at_solver import LookAtSolver
+from sailenv_ros.world.motion_log import Motion, MotionLog
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.mover_table import MoverTable
 from sailenv_ros.world.object_state import object_state
 from sailenv_ros.world.resting import begin_at_rest
+from sailenv_ros.world.robot_placements import RobotPlacement
+from sailenv_ros.world.robot_table import RobotTable
 from sailenv_ros.world.step_actions import StepActions
 
 __all__ = ["WorldState"]
-SOLVER_RESIDUAL = 1e-5
-"""Sum of the squared changes of velocities at which the engine's solver ends [m²/s²]; with ten
-times as much, cutlery on a plate never comes to rest."""
-
-WARM_STARTING = 0.85
-"""Share of a contact's last impulse that the solver begins with, Bullet's own default; with
-PyBullet's 0.1 a book that lies on a bed trembles forever."""
 
 
 class WorldState:
@@ -62,10 +59,13 @@ class WorldState:
         False leaves everything exactly where it is placed; see `resting.begin_at_rest`.
     waiting : collection of str
         Names of the placements that are nowhere until they `enter`.
+    robots : sequence of RobotPlacement
+        Whose links are among the placements.
 
     Attributes
     ----------
     described : SceneSpec or None
+    robots : RobotTable
     frustum_planes : callable
         ``frustum_planes(agent, distance_m)`` returns the (N, 4) planes of an agent's view frustum;
         none unless the owner of the agents has set it.
@@ -86,6 +86,7 @@ class WorldState:
         described: SceneSpec | None = None,
         settled: bool = True,
         waiting: Collection[str] = (),
+        robots: Sequence[RobotPlacement] = (),
     ) -> None:
         self.scene = scene
         self.epoch = epoch
@@ -95,16 +96,18 @@ class WorldState:
         self._client = BulletClient()
         self._stands = MoverTable(self._client, movers)
         self._contact_log = ContactLog(self._client, self._stands.gain)
+        self._motion_log = MotionLog()
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
         self._states: InstanceStates | None = None
         self._changed_step = 0
         self.frustum_planes: FrustumPlanes = lambda agent, distance_m: np.zeros((0, 4))
         try:
-            self._configure()
+            configure(self._client)
             self._client.gravity = gravity
             self._bodies = BodyTable(self._client, placements, waiting)
             self._bodies.others = lambda: self._stands.bodies
+            self.robots = RobotTable(self._client, self._bodies, robots)
             begin_at_rest(self._client, self.bodies, settled=settled)
             self._stands.enter()
             self._crowd = Crowd(lambda: self._bodies, lambda: self._stands.places(self.sim_time_ns))
@@ -139,9 +142,12 @@ class WorldState:
         """Advance by so many steps of 1/240 s."""
         pushed = (*self._bodies, *self._stands.bodies)
         actions = StepActions(self._client, pushed, self.frustum_planes, self._crowd)
-        for _ in range(count):
+        for left in range(count, 0, -1):
+            if left == 1:
+                self._motion_log.before_step(self._step, self._bodies.items())
             actions.act(self._step / STEPS_PER_SECOND)
             self._stands.before_step(self.sim_time_ns)
+            self.robots.before_step(self._step / STEPS_PER_SECOND)
             self._bodies.joints.before_step()
             self._client.stepSimulation()
             self._stands.after_step(self.sim_time_ns)
@@ -317,6 +323,10 @@ class WorldState:
         count = max(1, round(seconds * STEPS_PER_SECOND))
         return self._contact_log.contacts(self._step, count, ids, self._stands.pieces)
 
+    def accelerations(self) -> dict[int, Motion]:
+        """Return how bodies accelerated in the last step, by instance id; see `MotionLog`."""
+        return self._motion_log.accelerations(self._step, self._bodies.items())
+
     @property
     def waiting(self) -> InactiveObjects:
         """The objects that are nowhere now; read-only."""
@@ -332,18 +342,6 @@ class WorldState:
         self._client.close()
 
     # -- inside ----------------------------------------------------------------------------
-
-    def _configure(self) -> None:
-        client = self._client
-        client.setTimeStep(1.0 / STEPS_PER_SECOND)
-        client.setPhysicsEngineParameter(
-            # Without it the order of contacts, and with it the result, may depend on addresses.
-            deterministicOverlappingPairs=1,
-            numSolverIterations=50,
-            # Iterations end where they change nothing any more: most do after a few.
-            solverResidualThreshold=SOLVER_RESIDUAL,
-            warmStartingFactor=WARM_STARTING,
-        )
 
     def _changed(self) -> None:
         self._shown.renew()

@@ -23,6 +23,7 @@ from sailenv_ros.simulation.editing.material_edits import (
 )
 from sailenv_ros.simulation.editing.saving import environment_entry
 from sailenv_ros.simulation.live_scene import LiveScene
+from sailenv_ros.simulation.robot_entries import robot_placement
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.bodies import Body
@@ -32,6 +33,10 @@ __all__ = ["SceneEditor", "entry_without_place"]
 
 CHANGEABLE = tuple(ObjectChanges.__annotations__)
 """Keys of an object that `change_object` takes; it is moved by `move_object`."""
+
+
+OF_ROBOTS = ("robot", "collides_with_itself", "spinning_friction")
+"""Attributes that links of robots keep, whatever else is changed of them."""
 
 
 class SceneEditor:
@@ -77,6 +82,15 @@ class SceneEditor:
         self.scene.announce()
         return instance_id
 
+    def spawn_robot(self, entry: Mapping[str, Any], pose: Pose) -> str:
+        """Add a robot with keys of a scene file, but for its place; return its name."""
+        world = self.scene.world
+        library, taken = self.scene.library, [robot.name for robot in world.robots]
+        placement = robot_placement(entry, pose, taken, library.robots, library.knowledge)
+        world.spawn_robot(placement)
+        self.scene.announce()
+        return placement.spec.name
+
     def change_object(self, instance_id: int, changes: Mapping[str, Any]) -> None:
         """Change what an object is; None takes the asset's own."""
         world = self.scene.world
@@ -109,7 +123,8 @@ class SceneEditor:
         assert placement.entry is not None
         changed = {key: getattr(placement.entry, key) for key in changes}
         entry = present.model_copy(update=changed)
-        world.replace_body(instance_id, replace(placement, entry=entry))
+        kept = {key: getattr(body.placement, key) for key in OF_ROBOTS}
+        world.replace_body(instance_id, replace(placement, entry=entry, **kept))
         self.scene.announce()
 
     def require_untaught(self, instance_id: int) -> None:

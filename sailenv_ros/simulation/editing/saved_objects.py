@@ -53,7 +53,7 @@ def object_entries(world: World) -> list[Entry]:
             body, begun, unchanged=_placement_unchanged(body, begun, same_walls=same_walls)
         )
         for id_, body in world.numbered_bodies
-        if body.placement.entry is not None
+        if body.placement.entry is not None and not body.placement.robot
     }
     entries.update({id_: _visitor(waiting[id_], waiting[id_].pose) for id_ in waiting})
     return [entry for _, entry in sorted(entries.items())]

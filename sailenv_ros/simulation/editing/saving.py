@@ -29,6 +29,7 @@ from sailenv_ros.scene.spec import (
 from sailenv_ros.simulation.agent_record import AgentRecord
 from sailenv_ros.simulation.agent_table import AgentTable
 from sailenv_ros.simulation.editing.saved_objects import object_entries
+from sailenv_ros.simulation.robot_entries import robot_entries
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.rigs import body_of
 from sailenv_ros.world.jointed_bodies import JointedBody
@@ -75,6 +76,7 @@ def described_world(world: World, agents: AgentTable, *, cameras: Collection[str
         "lights": _lights(world, spec),
         "room": room_entry(world),
         "objects": object_entries(world),
+        "robots": robot_entries(world),
         **_movers(world, spec),
         "agents": _agents(world, spec, agents, cameras),
     }
@@ -250,8 +252,13 @@ def _agent(
     first = world.mover("").name
     if described is not None:
         begun = described.to_agent_spec()
-        same = replace(spec, pose=begun.pose) == replace(begun, mover=begun.mover or first)
+        mover = begun.mover or ("" if begun.carrier else first)
+        same = replace(spec, pose=begun.pose) == replace(begun, mover=mover)
+        if same and spec.carrier and begun.pose == spec.pose:
+            return described.model_dump(mode="json", exclude_unset=True)
         if same and (spec.following or begun.pose == record.pose):
             return described.model_dump(mode="json", exclude_unset=True)
     named = replace(spec, mover="" if spec.mover == first else spec.mover)
+    if spec.carrier:
+        return agent_entry(replace(named, mover=""), spec.pose)
     return agent_entry(named, None if spec.following else record.pose)

@@ -52,6 +52,7 @@ class EntityOperations(Caller):
         world = core.world
         added, moving, states = set(world.added_ids), world.moving_ids, world.states()
         rows = {int(number): row for row, number in enumerate(states.ids)}
+        accelerations = world.accelerations()
         found = []
         for drawn in world.contents.instances:
             one = drawn.instance
@@ -73,6 +74,8 @@ class EntityOperations(Caller):
                     pose=body.pose(),
                     linear_velocity=vector("velocity", states.linear_velocities[row]),
                     angular_velocity=vector("velocity", states.angular_velocities[row]),
+                    linear_acceleration=accelerations[one.id][0],
+                    angular_acceleration=accelerations[one.id][1],
                     sim_time_ns=world.sim_time_ns,
                 )
             )

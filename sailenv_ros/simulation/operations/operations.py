@@ -22,6 +22,7 @@ from sailenv_ros.simulation.operations.movers import MoverOperations
 from sailenv_ros.simulation.operations.object_operations import ObjectOperations
 from sailenv_ros.simulation.operations.operation import Operation
 from sailenv_ros.simulation.operations.rig_operations import RigOperations
+from sailenv_ros.simulation.operations.robot_operations import RobotOperations
 from sailenv_ros.simulation.operations.sailenv_names import SailenvNames
 from sailenv_ros.simulation.operations.saving_operations import SavingOperations
 from sailenv_ros.simulation.operations.space_operations import SpaceOperations
@@ -36,6 +37,7 @@ class WorldOperations(
     LookOperations,
     ObjectOperations,
     JointOperations,
+    RobotOperations,
     MaterialOperations,
     LightOperations,
     EnvironmentOperations,

@@ -41,6 +41,7 @@ __all__ = [
     "HasWorld",
     "OperationTarget",
     "RunsTime",
+    "Senses",
     "ViewsScene",
 ]
 
@@ -147,6 +148,10 @@ class HasSpace(Protocol):
     @property
     def seed(self) -> int:
         """Seed of the present world's random numbers."""
+
+
+class Senses(HasSpace, HasWorld, Protocol):
+    """Sensors in a world that rays look into."""
 
 
 class ViewsScene(HasAgents, Protocol):

@@ -190,24 +190,28 @@ LENSES = st.builds(
     distortion=st.tuples(*[st.floats(0.0, 0.1)] * 4),
 )
 INTRINSICS = PINHOLES | LENSES
-AGENTS = st.builds(
-    AgentSpec,
-    name=NAMES,
-    intrinsics=INTRINSICS,
-    depth_range_m=st.floats(1.5, 1e3),
-    rate_hz=st.floats(0.0, 240.0),
-    views=VIEW_SETS,
-    following=st.booleans(),
-    mover=TEXTS,
-    picture=PICTURES,
-    look_at=st.none() | LOOK_ATS,
-) | st.builds(
-    AgentSpec,
-    name=st.builds("{}/{}".format, NAMES, NAMES),
-    intrinsics=INTRINSICS,
-    depth_range_m=st.floats(1.5, 1e3),
-    views=VIEW_SETS,
-    extrinsics=POSES,
+AGENTS = (
+    st.builds(
+        AgentSpec,
+        name=NAMES,
+        intrinsics=INTRINSICS,
+        depth_range_m=st.floats(1.5, 1e3),
+        rate_hz=st.floats(0.0, 240.0),
+        views=VIEW_SETS,
+        following=st.booleans(),
+        mover=TEXTS,
+        picture=PICTURES,
+        look_at=st.none() | LOOK_ATS,
+    )
+    | st.builds(
+        AgentSpec,
+        name=st.builds("{}/{}".format, NAMES, NAMES),
+        intrinsics=INTRINSICS,
+        depth_range_m=st.floats(1.5, 1e3),
+        views=VIEW_SETS,
+        extrinsics=POSES,
+    )
+    | st.builds(AgentSpec, name=NAMES, intrinsics=PINHOLES, carrier=NAMES, pose=POSES)
 )
 JSON_VALUES = st.recursive(
     st.booleans() | st.integers(-(2**53), 2**53) | st.floats(allow_nan=False) | TEXTS,
@@ -500,8 +504,8 @@ def test_settings_of_pictures(settings_: PictureSettings) -> None:
 
 @given(AGENTS, st.none() | POSES)
 def test_agents(spec: AgentSpec, pose: Pose | None) -> None:
-    """The start pose stands beside the message; cameras of a rig have none."""
-    pose = None if spec.body else pose
+    """The start pose stands beside the message; carried ones have theirs in it."""
+    pose = None if spec.body else spec.pose if spec.carrier else pose
     msg = agent_spec_to_msg(spec)
     assert agent_spec_from_msg(msg, pose=pose) == dataclasses.replace(spec, pose=pose)
 

@@ -160,3 +160,16 @@ def test_a_region_has_what_its_shapes_touch(core: SynchronousSimulation) -> None
     assert do(core, Entities.clearance_m, point) == pytest.approx(0.295)
     low, high = do(core, Entities.entity_box, "cube")
     assert (low, high) == ((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
+
+
+def test_accelerations_are_those_of_the_last_step(core: SynchronousSimulation) -> None:
+    """What falls gains 9.81 m/s²; nobody had listened before the first question."""
+    cube = {"name": "stone", "asset": "cube", "mass": 1.0}
+    do(core, Entities.spawn_entry, cube, HIGH)
+    core.step(2)
+    assert named(core)["stone"].linear_acceleration == (0.0, 0.0, 0.0)
+    core.step(5)
+    falling = named(core)
+    assert falling["stone"].linear_acceleration == pytest.approx((0.0, 0.0, -9.81), abs=1e-9)
+    assert falling["stone"].angular_acceleration == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+    assert falling["floor"].linear_acceleration == (0.0, 0.0, 0.0)
