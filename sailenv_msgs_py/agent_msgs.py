@@ -35,8 +35,14 @@ def agent_spec_to_msg(spec: AgentSpec) -> AgentInfo:
         mover=spec.mover,
         picture=picture_to_msg(spec.picture),
         look_at=look_at_to_msg(spec.look_at),
-        extrinsics=pose_to_msg(spec.extrinsics or Pose()),
+        carrier=spec.carrier,
+        extrinsics=pose_to_msg(_held(spec)),
     )
+
+
+def _held(spec: AgentSpec) -> Pose:
+    """Return where an agent is in the frame of what carries it."""
+    return spec.extrinsics or (spec.pose if spec.carrier else None) or Pose()
 
 
 def agent_spec_from_msg(msg: AgentInfo, *, pose: Pose | None = None) -> AgentSpec:
@@ -56,7 +62,8 @@ def agent_spec_from_msg(msg: AgentInfo, *, pose: Pose | None = None) -> AgentSpe
         following=bool(msg.following),
         mover=msg.mover,
         picture=picture_from_msg(msg.picture),
-        pose=pose,
+        pose=pose_from_msg(msg.extrinsics) if msg.carrier else pose,
+        carrier=msg.carrier,
         look_at=look_at_from_msg(msg.look_at),
         extrinsics=pose_from_msg(msg.extrinsics) if body_of(msg.name) else None,
     )

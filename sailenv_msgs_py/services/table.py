@@ -17,6 +17,7 @@ from sailenv_msgs_py.object_msgs import (
 )
 from sailenv_msgs_py.object_truth_msgs import amodal_masks_from_msgs
 from sailenv_msgs_py.services import conversions as convert
+from sailenv_msgs_py.services.robot_services import ROBOT_SERVICES
 from sailenv_msgs_py.services.service import Service
 from sailenv_msgs_py.space_msgs import (
     free_space_from_response,
@@ -116,6 +117,7 @@ SIMULATOR_SERVICES: tuple[Service, ...] = (
         fill=lambda response, joints, info: joints_to_response(response, joints),
         result=joints_from_response,
     ),
+    *ROBOT_SERVICES,
     Service(
         Operations.load_scenario,
         srv.LoadScenario,

@@ -172,3 +172,11 @@ def test_the_standard_interfaces_repeat_a_fall() -> None:
     assert "equal bytes: True" in out
     assert "left after the reset: []" in out
     assert "ended with status 0" in out
+
+
+def test_an_arm_puts_a_mug_on_a_shelf(tmp_path: Path) -> None:
+    """By contact and friction; the camera in its hand sees it."""
+    path = tmp_path / "picture.png"
+    out = run("20_robot_arm", "1", str(path))
+    assert "1 of 1 mugs stand on the shelf" in out
+    assert path.stat().st_size > 2_000

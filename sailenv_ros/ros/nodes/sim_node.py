@@ -39,6 +39,7 @@ from sailenv_ros.ros.nodes.live_parameters import LiveParameters
 from sailenv_ros.ros.nodes.parameter_table import NAMESPACE
 from sailenv_ros.ros.nodes.parameters import declare_parameters
 from sailenv_ros.ros.nodes.requests import OperationRunner
+from sailenv_ros.ros.nodes.robot_topics import RobotTopics
 from sailenv_ros.ros.nodes.running import exit_status, refusing
 from sailenv_ros.ros.nodes.services import SimulatorServices
 from sailenv_ros.ros.nodes.simulation_interfaces import standard_interfaces
@@ -100,6 +101,7 @@ class SimNode:
         )
         self._contacts, self._lessons = ContactTopic(node), LessonTopic(node)
         self._joints = JointTopic(node)
+        self._robots = RobotTopics(node, executor, runner)
         self._stop_maps = simulation.on_free_space(FreeSpaceTopic(node).publish)
         self._leases = AgentLeases(node, runner)
         self._services = SimulatorServices(
@@ -129,6 +131,7 @@ class SimNode:
         self._contacts.begin(self._simulation)
         self._lessons.begin(self._simulation)
         self._joints.begin(self._simulation)
+        self._robots.begin(self._simulation)
         self._executor.add_node(self._node)
         self._spinning.start()
         if self._interfaces is not None:
@@ -145,6 +148,7 @@ class SimNode:
         self._contacts.end()
         self._lessons.end()
         self._joints.end()
+        self._robots.end()
         self._stop_maps()
         self._endpoints.close()
         return self._hosted.close_simulation(timeout_s)

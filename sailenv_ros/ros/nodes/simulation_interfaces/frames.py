@@ -9,7 +9,13 @@ from simulation_interfaces.msg import EntityState
 
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
 from sailenv_msgs_py.stamps import stamp_from_ns
-from sailenv_msgs_py.transforms import pose_from_msg, pose_to_msg, twist_from_msg, twist_to_msg
+from sailenv_msgs_py.transforms import (
+    pose_from_msg,
+    pose_to_msg,
+    twist_from_msg,
+    twist_to_msg,
+    vector_to_msg,
+)
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.ros.nodes.simulation_interfaces.desk import Desk
 from sailenv_ros.ros.nodes.simulation_interfaces.results import Refusal
@@ -60,11 +66,14 @@ async def velocities_in_world(
 
 
 def state_to_msg(entity: Entity) -> Any:
-    """Make the state of an entity in the world; accelerations are not known and stay 0."""
+    """Make the state of an entity in the world."""
     state = EntityState(pose=pose_to_msg(entity.pose))
     state.header.frame_id = WORLD_FRAME_ID
     state.header.stamp = stamp_from_ns(entity.sim_time_ns)
     state.twist = twist_to_msg((entity.linear_velocity, entity.angular_velocity))
+    linear, angular = entity.linear_acceleration, entity.angular_acceleration
+    state.acceleration.linear = vector_to_msg(linear)
+    state.acceleration.angular = vector_to_msg(angular)
     return state
 
 
