@@ -96,13 +96,7 @@ class BodyTable:
         raise InvalidRequest("object", piece.name, accepted)
 
     def piece(self, instance_id: int) -> LabelledPiece:
-        """Find what an instance id stands for.
-
-        Raises
-        ------
-        InvalidRequest
-            If no instance has that id now.
-        """
+        """Find what an instance id stands for; one that no instance has now is refused."""
         return find_piece(self.pieces, instance_id)
 
     def items(self) -> Iterable[tuple[int, Body]]:
@@ -257,10 +251,7 @@ class BodyTable:
         self.joints.arrange(self)
 
     def rebuild(self, instance_id: int, placement: Placement) -> None:
-        """Make of a body what another placement says; it keeps its id, its place, its motion.
-
-        See `World.replace_body` for errors.
-        """
+        """Make of a body what another placement says, as `World.replace_body`."""
         old = self[instance_id]
         if placement.name != old.placement.name:
             self._require_free_name(placement.name)
@@ -319,9 +310,9 @@ class BodyTable:
             if other is not body and other.bullet_id in touching:
                 other.wake()
 
-    def reset_motion_history(self, instance_id: int) -> None:
+    def reset_motion_history(self, body_id: int) -> None:
         """Begin a new history: flow does not see where the body was before."""
-        self._ids.begin_history(instance_id)
+        self._ids.begin_history(body_id)
 
     def _add_body(self, placement: Placement, *, waits: bool = False) -> int:
         self._require_free_name(placement.name)

@@ -244,12 +244,7 @@ class WorldState:
         return self._states
 
     def mover(self, name: str) -> Mover:
-        """Find a mover; the empty name means the scene's first.
-
-        Raises
-        ------
-        UnknownName
-        """
+        """Find a mover; the empty name means the scene's first. Raises UnknownName."""
         return self._stands[name]
 
     def body(self, instance_id: int) -> Body:
