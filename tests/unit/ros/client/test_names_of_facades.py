@@ -11,7 +11,7 @@ from sailenv_ros import Agent, Simulation
 from sailenv_ros.simulation.operations.sailenv_names import SailenvNames
 
 DOCS = Path(__file__).parents[4] / "docs"
-GROUPS, PORTING = DOCS / "operations.md", DOCS / "porting.md"
+GROUPS, PORTING = DOCS / "api" / "operations.md", DOCS / "porting.md"
 
 ORIGINAL = {
     "register", "delete", "get_frame", "change_scene", "get_categories", "get_position",
