@@ -10,13 +10,15 @@ from types import MappingProxyType
 from sailenv_content.people.fetch_bodies import BODIES_COMMAND, body_data
 from sailenv_content.people.looks import people
 from sailenv_content.people.making import make_person
-from sailenv_ros.errors import AssetError
+from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.types.model import Asset
 
 __all__ = ["IN_PARTS", "PeopleSource"]
 
 IN_PARTS = "_in_parts"
 """Ends the name of a person whose hair and clothes have labels of their own."""
+
+PREFIX = "person_"
 
 MAX_KEPT = 64
 """Most people that are kept; the one that was not asked for for longest is dropped first."""
@@ -30,24 +32,35 @@ class PeopleSource:
 
     @property
     def display_names(self) -> Mapping[str, str]:
-        """Display name of each catalogue name."""
-        if body_data() is None:
-            return MappingProxyType({})
-        found = {}
-        for name, look in people().items():
-            title = f"{look.title} ({name.rpartition('_')[2]})"
-            found[name] = title
-            found[f"{name}{IN_PARTS}"] = f"{title} in parts"
-        return MappingProxyType(found)
+        """Nothing: whoever looks through a catalogue would have to make them all."""
+        return MappingProxyType({})
+
+    def speaks_of(self, name: str) -> bool:
+        """Return whether a name is meant to be one of a person."""
+        return name.startswith(PREFIX)
+
+    def problem(self, name: str) -> UnknownName | None:
+        """Return why there is no person of a name; None if there is one."""
+        whole = name.removesuffix(IN_PARTS)
+        return None if whole in people() else UnknownName("person", whole, people())
+
+    def sibling(self, name: str, seed: int) -> str | None:
+        """Return nothing: a person is nobody else."""
+        return None
 
     def load(self, name: str) -> Asset:
         """Make a person.
 
         Raises
         ------
+        UnknownName
+            If there is nobody of that name.
         AssetError
             If the data of bodies is not here, or cannot be read.
         """
+        problem = self.problem(name)
+        if problem is not None:
+            raise problem
         data = body_data()
         if data is None:
             raise AssetError(name, f"the data of bodies is not here; fetch it: {BODIES_COMMAND}")

@@ -14,8 +14,10 @@ from sailenv_content.people.makehuman import BODY_VERTICES, BodyData
 from sailenv_content.people.making import make_person
 from sailenv_content.people.source import IN_PARTS, PeopleSource
 from sailenv_ros import AgentSpec, CameraIntrinsics, Simulation
+from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.dataset.formats.coco import _keypoints
-from sailenv_ros.errors import AssetError
+from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.scene.randomise.things import random_people
 from sailenv_ros.types.geometry import look_at
 from sailenv_ros.types.skeleton import COCO_KEYPOINTS
@@ -74,6 +76,16 @@ def test_without_data_there_are_no_people(monkeypatch: pytest.MonkeyPatch, tmp_p
     assert dict(source.display_names) == {}
     with pytest.raises(AssetError, match="sailenv assets people"):
         source.load("person_01")
+
+
+def test_people_stand_in_no_list_but_have_names() -> None:
+    """Whoever looks at all objects of the catalogue would have to make them all: some minutes."""
+    library = AssetLibrary(installed_sources())
+    assert not [name for name in library.names if name.startswith("person_")]
+    assert library.canonical("person_01_in_parts") == "person_01_in_parts"
+    assert not library.has("person_99")
+    with pytest.raises(UnknownName, match="person must be one of: person_01, "):
+        library.canonical("person_99")
 
 
 def test_keypoints_say_what_hides_them(data: BodyData, tmp_path: Path) -> None:
