@@ -61,12 +61,13 @@ async def get_entity_state(desk: Desk, request: Any, response: Any) -> None:
 
 
 async def set_entity_state(desk: Desk, request: Any, response: Any) -> None:
-    """Put an entity somewhere at once, and let it move on."""
+    """Put an entity somewhere at once, and let it move on.
+
+    Accelerations follow from forces. 1.5 has no flag for them, and a state that was got must be one
+    that can be set: there they are left alone.
+    """
     number, state = desk.find(request.entity), request.state
-    parts = (state.acceleration.linear, state.acceleration.angular)
-    accelerated = any((part.x, part.y, part.z) != (0.0, 0.0, 0.0) for part in parts)
-    flagged = hasattr(request, "set_acceleration")
-    if is_set(request, "acceleration") and (flagged or accelerated):
+    if getattr(request, "set_acceleration", False):
         raise unsupported("an acceleration cannot be set; a force can, by the service apply_wrench")
     frame = state.header.frame_id
     pose = velocities = None
