@@ -61,7 +61,7 @@ def colour_words(linear: NDArray[np.float32]) -> NDArray[np.uint8]:
     words : (...) uint8
         Places in `COLOUR_WORDS`.
     """
-    roots = np.sqrt(linear.clip(0.0, 1.0))
+    roots = np.sqrt(np.nan_to_num(linear).clip(0.0, 1.0))
     places = np.minimum((roots * _STEPS).astype(np.int64), _STEPS - 1)
     words: NDArray[np.uint8] = _table()[places[..., 0], places[..., 1], places[..., 2]]
     return words

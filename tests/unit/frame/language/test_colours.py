@@ -146,3 +146,8 @@ def test_a_table_has_a_row_for_each_question(frame: Frame, tmp_path: Path) -> No
     assert said[1::2] == [one["answer"] for one in asked]
     assert said[2::2] == [one["text"] for one in asked[1:]]
     assert {turn["from"] for turn in talk["conversations"]} == {"human", "gpt"}
+
+
+def test_a_pixel_without_a_colour_has_no_word() -> None:
+    """Recordings of noise have NaN there."""
+    assert COLOUR_WORDS[int(colour_words(np.full(3, np.nan, np.float32)))] in ("", "black")
