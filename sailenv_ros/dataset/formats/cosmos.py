@@ -79,9 +79,8 @@ class CosmosExport(DatasetFormat):
 
 def _depth(frame: Frame) -> Picture:
     near, far = 1.0 / NEAREST_M, 1.0 / FARTHEST_M
-    with np.errstate(divide="ignore"):
-        inverse = 1.0 / np.nan_to_num(frame["depth"], nan=NEAREST_M, posinf=np.inf)
-    share = ((inverse - far) / (near - far)).clip(0.0, 1.0)
+    depth = np.nan_to_num(frame["depth"], nan=NEAREST_M, posinf=FARTHEST_M)
+    share = (1.0 / depth.clip(NEAREST_M, FARTHEST_M) - far) / (near - far)
     return _grey((255.0 * share + 0.5).astype(np.uint8))
 
 
