@@ -148,7 +148,7 @@ def judge_loader(count: int, workers: int) -> None:
     with streams.open("home", seed=SEED)[FIRST : FIRST + 50] as plain:
         expected = {frame.number: frame["rgb"].copy() for frame in plain}
     for label, subset, shuffle in (("in order", part, False), ("shuffled", part[:200], True)):
-        loader = DataLoader(subset, batch_size=16, num_workers=workers, shuffle=shuffle)  # type: ignore[arg-type]
+        loader = DataLoader(subset, batch_size=16, num_workers=workers, shuffle=shuffle)
         begin_s, seen, equal = time.monotonic(), 0, 0
         for batch in loader:
             seen += len(batch["number"])

@@ -32,7 +32,7 @@ class PeopleSource:
 
     @property
     def display_names(self) -> Mapping[str, str]:
-        """Nothing: whoever looks through a catalogue would have to make them all."""
+        """Nothing: who looks through a catalogue would have to make them all."""
         return MappingProxyType({})
 
     def speaks_of(self, name: str) -> bool:

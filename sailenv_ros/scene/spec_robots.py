@@ -140,7 +140,7 @@ def robots_stand(scene: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ..
     named = {
         entry.get("name"): entry
         for entry in (objects if isinstance(objects, list | tuple) else ())
-        if isinstance(entry, Mapping)
+        if isinstance(entry, Mapping) and isinstance(entry.get("name"), str)
     }
     robots = scene.get("robots")
     for index, robot in enumerate(robots if isinstance(robots, list | tuple) else ()):

@@ -552,6 +552,9 @@ def same_arrays(
     assert (read is None) == (written is None)
     for name in () if read is None else [entry.name for entry in dataclasses.fields(read)]:
         one, other = getattr(read, name), getattr(written, name)
+        if isinstance(other, Mapping):  # vertices and skeletons do not travel
+            assert not one
+            continue
         assert (one.dtype, one.shape, one.tobytes()) == (other.dtype, other.shape, other.tobytes())
 
 

@@ -304,8 +304,9 @@ void find_pixel(const SurfacePoints& in, int64_t at, int64_t row, int32_t& leaf)
         for (int k = 0; k < 3; k++) found[k] = NOT_A_NUMBER;
         return;
     }
-    const auto* targets = reinterpret_cast<const double*>(in.targets[2 * row]);
-    const auto* present = reinterpret_cast<const double*>(in.targets[2 * row + 1]);
+    const auto* addresses = reinterpret_cast<const double* const*>(in.targets);
+    const double* targets = addresses[2 * row];
+    const double* present = addresses[2 * row + 1];
     const int64_t first = 9 * int64_t{best.triangle};
     for (int k = 0; k < 3; k++) {
         double sum = 0.0;
