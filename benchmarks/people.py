@@ -19,6 +19,7 @@ import json
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -81,6 +82,7 @@ def skin_motion(frames: int = 200) -> None:
             count += len(errors)
     print(f"flow on skin: {count} pixels, mean {mean / count:.1e} px, 99.9 % below {worst:.1e} px")
     first = kept[0]
+    assert first.states is not None
     chosen = np.isin(first["instance"], list(first.states.deformations))
     v, u = np.nonzero(chosen)
     picked = np.random.default_rng(1).choice(len(v), 300, replace=False)
@@ -94,7 +96,7 @@ def skin_motion(frames: int = 200) -> None:
     )
 
 
-def flow_errors(frame, before) -> np.ndarray:
+def flow_errors(frame: Any, before: Any) -> np.ndarray:
     """Errors of flow [px] at pixels of skin, by rays against the triangles in doubles."""
     found = []
     camera, earlier = frame.camera, before.camera
@@ -146,7 +148,7 @@ def nearest_hits(
     return triangle, weights
 
 
-def track_errors(tracks, frames) -> np.ndarray:
+def track_errors(tracks: Any, frames: Any) -> np.ndarray:
     """Errors of tracks [px]: the point's triangle at rest, found by brute force, in each frame."""
     errors = []
     for number, id_ in enumerate(tracks.instances.tolist()):
@@ -201,7 +203,9 @@ def clothes() -> None:
     worst, shares = 0.0, []
     for name in people():
         asset = library.get(f"{name}_in_parts")
-        rig, figure = asset.rig, figure_of(asset.rig)
+        rig = asset.rig
+        assert rig is not None
+        figure = figure_of(rig)
         stride = figure.stride
         feet = standing_feet(0.0, 0.0, 0.0, stride.width_m)
         way = way_along(feet, [(0.0, 0.0), (3.0, 0.0)], stride)
@@ -241,7 +245,9 @@ def clothes() -> None:
     )
 
 
-def beyond(points, cloth, normals, triangles) -> np.ndarray:
+def beyond(
+    points: np.ndarray, cloth: np.ndarray, normals: np.ndarray, triangles: np.ndarray
+) -> np.ndarray:
     """How far points that a cloth covers lie outside of it [m]."""
     from scipy.spatial import cKDTree
 
@@ -250,7 +256,7 @@ def beyond(points, cloth, normals, triangles) -> np.ndarray:
     away, near = cKDTree(centres).query(points, k=1, distance_upper_bound=0.012)
     some = np.isfinite(away)
     off = points[some] - centres[near[some]]
-    return np.clip(np.einsum("ij,ij->i", off, facing[near[some]]), 0.0, None)
+    return np.asarray(np.einsum("ij,ij->i", off, facing[near[some]]).clip(0.0, None))
 
 
 def walks(rooms: int, count: int) -> None:
@@ -288,7 +294,7 @@ def walks(rooms: int, count: int) -> None:
 STOCK = AssetLibrary(installed_sources())
 
 
-def walks_in(world: World, seed: int, count: int):
+def walks_in(world: World, seed: int, count: int) -> Any:
     """Yield (arrived, problem, depth, lowest sole, slide) of walks in one room."""
     from sailenv_ros.types.geometry import Pose
     from sailenv_ros.world.placement import Placement
@@ -385,6 +391,7 @@ def coco() -> None:
                 frame = simulation.capture(["depth", "instance"])
                 images.append({"id": image, "width": 640, "height": 480})
                 table = frame.objects
+                assert frame.states is not None
                 for id_ in frame.states.skeletons:
                     row = table.row(id_)
                     left, top, right, bottom = table.visible_boxes[row].tolist()

@@ -296,8 +296,10 @@ void find_pixel(const SurfacePoints& in, int64_t at, int64_t row, int32_t& leaf)
     Nearest best{ON_SURFACE * ON_SURFACE, std::numeric_limits<int32_t>::max(), -1, {}};
     if (known && leaf >= 0) look_over_leaf(shape, leaf, p, best);
     bool near = best.leaf >= 0;
-    for (double reach = FIRST_REACH; known && !near && reach <= LAST_REACH; reach *= 15.0) {
+    double reach = FIRST_REACH;
+    while (known && !near && reach <= LAST_REACH) {
         near = find_nearest(shape, p, reach, best);
+        reach *= 15.0;
     }
     leaf = near ? best.leaf : -1;
     if (!near) {
