@@ -5,12 +5,14 @@
     python benchmarks/judge_streams.py avalanche [--experiences N]
     python benchmarks/judge_streams.py drift
     python benchmarks/judge_streams.py still [--frames N]
+    python benchmarks/judge_streams.py memory [--frames N]
 
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
 shuffled. `avalanche` trains its `Naive` on experiences that are made when they are asked for.
 `drift` gives the mean colour of pictures to river's ADWIN as it comes: a camera that walks in one
-room, one drift at a time, which begins at a frame. `still` does so without any drift.
+room, one drift at a time, which begins at a frame. `still` does so without any drift. `memory`
+makes two frames of each episode of `home`, and tells the memory of the process.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -89,6 +91,8 @@ def main() -> None:
     actions.add_parser("drift")
     still = actions.add_parser("still")
     still.add_argument("--frames", type=int, default=100_000)
+    memory = actions.add_parser("memory")
+    memory.add_argument("--frames", type=int, default=410_000)
     options = parser.parse_args()
     if options.action == "seek":
         judge_seeking(options.frames)
@@ -98,8 +102,10 @@ def main() -> None:
         judge_avalanche(options.experiences)
     elif options.action == "drift":
         judge_drift()
-    else:
+    elif options.action == "still":
         judge_stillness(options.frames)
+    else:
+        measure_memory(options.frames)
 
 
 def judge_seeking(count: int) -> None:
@@ -226,6 +232,18 @@ def judge_stillness(count: int) -> None:
                 if detector.drift_detected:
                     found[signal].append(place)
         print(f"{end} frames without drift: {found}", flush=True)
+
+
+def measure_memory(count: int) -> None:
+    """Print the memory of this process after every 10,000 frames, of which few are made."""
+    with streams.open("home", seed=21) as stream:
+        for first in range(0, count, stream.course.episode):
+            for number in (first, first + 2):
+                stream[number]
+            if first % 10_000 == 0:
+                pages = int(Path("/proc/self/statm").read_text().split()[1])
+                mib = pages * resource.getpagesize() / 2**20
+                print(f"frame {first}: {mib:.0f} MiB", flush=True)
 
 
 def _means(course: dict[str, Any], begin: int, end: int) -> np.ndarray:

@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal, Protocol, TypeAlias
 import numpy as np
 from pydantic import Field
 
-from sailenv_ros.behaviours.base import Action, BehaviourParameters
+from sailenv_ros.behaviours.base import Action, BehaviourParameters, BodyState
 from sailenv_ros.scene.field_types import Number
 
-__all__ = ["Activity", "Person", "PersonParameters", "pause_between", "waits"]
+__all__ = ["Activity", "Person", "PersonParameters", "free_person", "pause_between", "waits"]
 
 Activity: TypeAlias = Literal["standing", "walking", "sitting down", "seated", "getting up"]
 
@@ -63,6 +63,24 @@ class PersonParameters(BehaviourParameters):
     def needs_person(self) -> bool:
         """True: nothing else can do it."""
         return True
+
+
+def free_person(
+    parameters: PersonParameters,
+    time_s: float,
+    body: BodyState,
+    memory: dict[str, Any],
+    rng: np.random.Generator,
+) -> Person | None:
+    """Return a person who stands and has paused after its walk; None while there is none."""
+    person = body.person
+    if person is None or time_s < 0.0 or person.activity != "standing":
+        memory["walks"] = person is not None and person.activity == "walking"
+        return None
+    if memory.pop("walks", False):
+        pause_between(parameters, memory, time_s, rng)
+        return None
+    return None if waits(memory, time_s) else person
 
 
 def waits(memory: dict[str, Any], time_s: float) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from sailenv_ros.behaviours.base import Action, BodyState, behaviour
-from sailenv_ros.behaviours.person import ASK_AGAIN_S, PersonParameters, pause_between, waits
+from sailenv_ros.behaviours.person import ASK_AGAIN_S, PersonParameters, free_person
 
 __all__ = ["Visit", "visit"]
 
@@ -30,13 +30,8 @@ def visit(
     rng: np.random.Generator,
 ) -> Action:
     """Walk to one object after another, and look at each."""
-    person = body.person
-    if person is None or time_s < 0.0 or person.activity != "standing":
-        memory["walks"] = person is not None and person.activity == "walking"
-        return Action()
-    if memory.pop("walks", False):
-        return pause_between(parameters, memory, time_s, rng)
-    if waits(memory, time_s):
+    person = free_person(parameters, time_s, body, memory, rng)
+    if person is None:
         return Action()
     names = parameters.objects or person.things()
     if names:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.behaviours.base import Action, BodyState, behaviour
-from sailenv_ros.behaviours.person import ASK_AGAIN_S, PersonParameters, pause_between, waits
+from sailenv_ros.behaviours.person import ASK_AGAIN_S, PersonParameters, free_person
 
 __all__ = ["WalkAround", "walk_around"]
 
@@ -25,13 +25,8 @@ def walk_around(
     rng: np.random.Generator,
 ) -> Action:
     """Walk to random free places, with pauses."""
-    person = body.person
-    if person is None or time_s < 0.0 or person.activity != "standing":
-        memory["walks"] = person is not None and person.activity == "walking"
-        return Action()
-    if memory.pop("walks", False):
-        return pause_between(parameters, memory, time_s, rng)
-    if waits(memory, time_s):
+    person = free_person(parameters, time_s, body, memory, rng)
+    if person is None:
         return Action()
     place = person.random_place(rng)
     if place is None or not person.walk_to(place):

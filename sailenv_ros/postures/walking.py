@@ -22,7 +22,7 @@ from sailenv_ros.postures.standing import (
 )
 from sailenv_ros.types.rig import Rig
 
-__all__ = ["standing_posture", "walking_posture"]
+__all__ = ["walking_posture"]
 
 Doubles = NDArray[np.float64]
 
@@ -33,18 +33,6 @@ _STRAIGHT = 0.985
 """Share of its length to which a leg that stands is stretched."""
 
 _TOE_OFF_DEG, _HEEL_STRIKE_DEG = 26.0, 14.0
-
-
-def standing_posture(
-    rig: Rig,
-    moment: Moment,
-    time_s: float,
-    *,
-    seed: int = 0,
-    look_deg: tuple[float, float] = (0, 0),
-) -> Posture:
-    """Return the posture of a body that stands; see `walking_posture`."""
-    return walking_posture(rig, moment, time_s, seed=seed, look_deg=look_deg)
 
 
 def walking_posture(

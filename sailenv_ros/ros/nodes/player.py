@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, cast
 
 from rclpy.duration import Duration
@@ -33,7 +33,7 @@ from sailenv_ros.ros.nodes.qos import clock_qos, no_events, recorded_qos
 from sailenv_ros.ros.nodes.running import run_node
 from sailenv_ros.types.validation import Bounds
 
-__all__ = ["ACKNOWLEDGE_S", "PARAMETERS", "Player", "main", "recorded_publisher"]
+__all__ = ["PARAMETERS", "Player", "await_acknowledged", "main", "recorded_publisher"]
 
 NODE_NAME = "player"
 LOOK_INTERVAL_S = 0.05
@@ -134,10 +134,7 @@ class Player:
 
     def await_acknowledged(self) -> None:
         """Wait a little until reliable subscribers have the last messages."""
-        deadline = time.monotonic() + ACKNOWLEDGE_S
-        for publisher in self._publishers.values():
-            left_s = max(0.0, deadline - time.monotonic())
-            publisher.wait_for_all_acked(Duration(nanoseconds=round(left_s * 1e9)))
+        await_acknowledged(self._publishers.values())
 
     # -- inside ----------------------------------------------------------------------------
 
@@ -230,6 +227,14 @@ def _playable(node: Node, reader: RecordingReader, names: Sequence[str]) -> list
     if not playable:
         raise RecordingError(f"{reader.path} has no topic that can be played")
     return playable
+
+
+def await_acknowledged(publishers: Iterable[Publisher]) -> None:
+    """Wait a little until reliable subscribers have the last messages."""
+    deadline = time.monotonic() + ACKNOWLEDGE_S
+    for publisher in publishers:
+        left_s = max(0.0, deadline - time.monotonic())
+        publisher.wait_for_all_acked(Duration(nanoseconds=round(left_s * 1e9)))
 
 
 def recorded_publisher(node: Node, topic: RecordedTopic) -> Publisher:

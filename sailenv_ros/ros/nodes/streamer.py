@@ -12,7 +12,6 @@ import time
 from collections.abc import Sequence
 from typing import Any, cast
 
-from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 
@@ -24,7 +23,7 @@ from sailenv_ros.recording.topics import RecordedTopic
 from sailenv_ros.ros.nodes.lifecycle import StopRequest
 from sailenv_ros.ros.nodes.parameter_table import Parameter
 from sailenv_ros.ros.nodes.parameters import declare_table
-from sailenv_ros.ros.nodes.player import ACKNOWLEDGE_S, recorded_publisher
+from sailenv_ros.ros.nodes.player import await_acknowledged, recorded_publisher
 from sailenv_ros.ros.nodes.qos import clock_qos, no_events
 from sailenv_ros.ros.nodes.running import run_node
 from sailenv_ros.streams.course import MOST_FRAMES
@@ -92,10 +91,7 @@ class TopicSink:
 
     def await_acknowledged(self) -> None:
         """Wait a little until reliable subscribers have the last messages."""
-        deadline = time.monotonic() + ACKNOWLEDGE_S
-        for publisher in self._publishers.values():
-            left_s = max(0.0, deadline - time.monotonic())
-            publisher.wait_for_all_acked(Duration(nanoseconds=round(left_s * 1e9)))
+        await_acknowledged(self._publishers.values())
 
 
 def main(argv: Sequence[str] | None = None) -> int:
