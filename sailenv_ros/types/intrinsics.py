@@ -21,6 +21,9 @@ __all__ = ["CameraIntrinsics"]
 
 _WIDEST_BORDER = math.tan(math.radians(80.0))
 
+_LEAST_DEPTH_M = 1e-12
+"""Nearer to the camera's plane a point's pixel would have no finite number."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class CameraIntrinsics(LensParameters):
@@ -177,12 +180,12 @@ class CameraIntrinsics(LensParameters):
         -------
         pixels : (..., 2) float64
             Columns and rows (u, v) [px]; ``nan`` for points that the lens does not see, be they
-            behind the camera or beyond the image circle.
+            behind the camera, in its plane or beyond the image circle.
         """
         p = np.asarray(points, dtype=np.float64)
         if not self.is_pinhole:
             return self.law.project(p) * (self.fx, self.fy) + (self.cx, self.cy)
-        z = np.where(p[..., 2] > 0.0, p[..., 2], np.nan)
+        z = np.where(p[..., 2] > _LEAST_DEPTH_M, p[..., 2], np.nan)
         u = self.fx * p[..., 0] / z + self.cx
         v = self.fy * p[..., 1] / z + self.cy
         return np.stack([u, v], axis=-1)

@@ -665,8 +665,9 @@ def test_every_field_of_every_message_is_drawn_above() -> None:
             )
         )(note)
     )()
-    # Scenes hold few agents; each of an agent's many fields needs examples of its own.
+    # Scenes hold few agents and bodies; each of their fields needs examples of its own.
     quick(given(AGENTS.map(agent_spec_to_msg))(note))()
+    quick(given(RIGID_BODIES.map(rigid_body_to_msg))(note))()
     quick(given(scene_infos().map(scene_info_to_msg))(note))()
     quick(given(frames().map(frame_info_of))(note))()
     quick(given(observed_frames().map(objects_of))(note))()
