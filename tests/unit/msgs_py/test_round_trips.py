@@ -30,6 +30,7 @@ from sailenv_msgs_py.frame_info import (
     row_poses_of_frame_info,
     states_of_frame_info,
 )
+from sailenv_msgs_py.mover_msgs import rigid_body_to_msg
 from sailenv_msgs_py.object_msgs import (
     behaviour_from_msg,
     behaviour_to_msg,

@@ -53,6 +53,12 @@ def test_unprojection_undoes_projection(lens: CameraIntrinsics, depth: float) ->
     np.testing.assert_allclose(lens.project(points), np.stack([u, v], axis=-1), atol=1e-6)
 
 
+@given(LENSES, st.floats(0.0, 1e-12))
+def test_no_pixel_sees_a_point_in_the_camera_s_plane(lens: CameraIntrinsics, depth: float) -> None:
+    """However small its depth; a pixel's number would overflow."""
+    assert np.isnan(lens.project([3.0, -2.0, depth])).all()
+
+
 @given(LENSES)
 def test_rays_are_those_of_the_whole_picture_in_any_part_of_it(lens: CameraIntrinsics) -> None:
     """By a window and by places of pixels: the same bits; between pixels they project back."""
