@@ -19,6 +19,8 @@ from sailenv_ros.errors import UnknownName
 from sailenv_ros.scene.documents import load_document
 from sailenv_ros.scene.field_types import Number, Switch, optional
 from sailenv_ros.scene.fields import Fraction, Rule, SceneModel
+from sailenv_ros.scene.randomise.thing_table import RandomThing
+from sailenv_ros.scene.rules import distinct
 from sailenv_ros.scene.scene_diagnostics import Diagnostic, model_diagnostics
 from sailenv_ros.scene.spec_picture import PictureSpec
 from sailenv_ros.streams.drifts.classes import ClassSpan
@@ -118,6 +120,8 @@ class DriftSpec(SceneModel):
 class Course(SceneModel):
     """A file of ``config/courses``."""
 
+    rules: ClassVar[tuple[Rule, ...]] = (distinct("name", "randomise"),)
+
     version: Literal[1] = Field(description="of this format; 1")
     name: str = Field(default="", description="the file's name")
     title: str = Field(default="", max_length=200, description="what people call it")
@@ -135,6 +139,11 @@ class Course(SceneModel):
     )
     rooms: RoomsSpec = Field(default_factory=RoomsSpec, description="where")
     eye: EyeSpec = Field(default_factory=EyeSpec, description="the camera")
+    randomise: tuple[RandomThing, ...] = Field(
+        default=(),
+        max_length=100,
+        description="what is drawn at random in each episode, as in a scene file, people among it",
+    )
     moves: MovesSpec = Field(default_factory=MovesSpec, description="what moves")
     drift: DriftSpec = Field(default_factory=DriftSpec, description="what changes")
 
@@ -186,6 +195,9 @@ def _errors(data: dict[str, Any], error: ValidationError | None) -> Iterator[Dia
         if span.category not in known:
             problem = UnknownName("category", span.category, known)
             yield Diagnostic(("drift", "classes", index, "category"), str(problem))
+    for index, thing in enumerate(course.randomise):
+        if thing.every != "epoch":
+            yield Diagnostic(("randomise", index, "every"), "must be epoch in a stream")
     if course.eye.picture.to_settings().auto_exposure_s:
         # It depends on all that was seen before, which a frame by its number must not.
         yield Diagnostic(("eye", "picture", "auto_exposure_s"), "is not possible in a stream")

@@ -15,6 +15,7 @@ from sailenv_ros.frame.frame import Frame
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.simulation.script.randomiser import RandomisationRequest
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.streams.course import Course
 from sailenv_ros.streams.plan import Place, StreamPlan
@@ -118,15 +119,18 @@ class Player:
         self._at = self._drawn = None
         path = self._library.path(place.room)
         seed = self._plan.dice(place.episode, "simulation").whole((0, 2**31 - 1))
+        things = self._course.randomise or None
+        fresh = self._core is None
         if self._core is None:
             self._core = SynchronousSimulation(
                 self._library, path, NativeRenderer(), mode="lockstep", real_time_factor=1.0,
                 seed=seed, paused=False,
             )  # fmt: skip
-        else:
+        if not fresh or things is not None:
             for spec in self._core.info.agents:
                 self._core.delete_agent(spec.name)
-            self._core.begin(str(path), seed, as_registered=False)
+            chance = RandomisationRequest(things=things)
+            self._core.begin(str(path), seed, as_registered=False, chance=chance)
         if self._course.baked:
             bake_missing(self._core.world)
         eye = self._course.eye

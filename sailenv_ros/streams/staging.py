@@ -91,11 +91,12 @@ class Stage:
         for name in self._dice.mixed(sorted(joints))[: self._course.moves.open]:
             period = round(self._dice.between(OPENS_S), 1)
             core.add_behaviour(name, {"type": "open_and_close", "period": period})
-        loose = sorted(one.name for one in present if not one.static and one.name not in joints)
+        things = [one for one in present if one.category != "person"]
+        loose = sorted(one.name for one in things if not one.static and one.name not in joints)
         for name in self._dice.mixed(loose)[: self._course.moves.pushed]:
             interval = round(self._dice.between(PUSHED_S), 1)
             core.add_behaviour(name, {"type": "poltergeist", "mean_interval": interval})
-        names = sorted(one.name for one in present if self._is_below_eyes(one.name))
+        names = sorted(one.name for one in things if self._is_below_eyes(one.name))
         self._target = self._dice.one(names) if names else ""
 
     # -- at each tick ------------------------------------------------------------------------

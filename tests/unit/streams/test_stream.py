@@ -92,6 +92,22 @@ def test_seeds_make_different_streams(course: Course, in_order: dict[int, str]) 
         assert _bytes(other[29]) != in_order[29]
 
 
+def test_people_of_a_course_live_in_each_episode(course_file: Path, tmp_path: Path) -> None:
+    """They are drawn for each episode, move, and are the same by number and in order."""
+    path = tmp_path / "lived_in.yaml"
+    people = "{type: people, name: person, count: 1, activity: [walk], assets: [person_03]}"
+    path.write_text(course_file.read_text() + f"randomise: [{people}]\n")
+    with streams.open(streams.load_course(path), seed=5, length=100) as one:
+        played = {number: one[number] for number in range(12)}
+        again = _bytes(one[4])
+    assert again == _bytes(played[4])
+    places = [
+        frame.objects.world_from_object[frame.objects.names.index("person 1")][:3, 3].tolist()
+        for frame in (played[number].frame for number in (0, 5, 6))
+    ]
+    assert len({tuple(place) for place in places}) == 3
+
+
 def test_flow_is_that_since_the_frame_before(stream: Stream) -> None:
     """Depth and poses of two frames, by arithmetic, where the room stands still."""
     with streams.open(stream.course, seed=5, views=("depth", "flow", "category"), length=60) as one:
@@ -122,9 +138,9 @@ def test_every_room_is_visited_on_each_tour(course: Course) -> None:
 
 
 def test_the_courses_of_the_package_are_well() -> None:
-    assert streams.courses() == ("home", "still_home")
+    assert streams.courses() == ("home", "lived_in", "still_home")
     rooms = [streams.open(name, seed=3).rooms for name in streams.courses()]
-    assert rooms[0] == rooms[1]
+    assert rooms[0] == rooms[2]
     assert len(set(rooms[0])) == 25
     assert len(streams.open()) == 10_000_000
 
@@ -177,6 +193,11 @@ def test_arrays_are_what_a_data_loader_takes(course: Course) -> None:
         ("smooth_edges: false", "auto_exposure_s: 1", "is not possible in a stream"),
         ("setting: gain", "setting: jpeg_quality", "setting"),
         ("scenes: [", "kinds: [kitschen], scenes: [", "did you mean 'kitchen'?"),
+        (
+            "moves:",
+            "randomise: [{type: material, name: m, of: floor, every: frame}]\nmoves:",
+            "must be epoch in a stream",
+        ),
     ],
 )
 def test_errors_of_a_course_have_their_place(
