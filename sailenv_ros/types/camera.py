@@ -42,9 +42,15 @@ def require_fitting(intrinsics: CameraIntrinsics, picture: PictureSettings) -> N
     Raises
     ------
     InvalidRequest
-        If there would be too many samples, or a depth sensor would have parallel rays.
+        If there would be too many samples, if their focal length would be too long, or if a depth
+        sensor would have parallel rays.
     """
     picture.require_drawable(intrinsics.width, intrinsics.height)
+    for name in ("fx_px", "fy_px"):
+        focal, longest = getattr(intrinsics, name), INTRINSICS_LIMITS[name].most
+        if picture.supersampling * focal > longest:
+            accepted = f"at most {int(longest // focal)} for {name} = {focal:g}"
+            raise InvalidRequest("supersampling", picture.supersampling, accepted)
     if intrinsics.is_parallel and picture.depth_sensor != IDEAL:
         raise InvalidRequest("depth_sensor", picture.depth_sensor, SENSOR_OF_PARALLEL_RAYS)
 
@@ -66,8 +72,7 @@ class Camera(RebuiltByFields):
     Raises
     ------
     InvalidRequest
-        If the picture would have to be drawn larger than `MAX_SIZE_PX`, or its depth sensor has
-        parallel rays.
+        See `require_fitting`.
     """
 
     intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)

@@ -107,6 +107,14 @@ def test_an_axis_off_the_centre_moves_the_whole_picture() -> None:
     np.testing.assert_allclose([top, bottom], [-33.0 / f, 47.0 / f])
 
 
+def test_samples_of_a_long_lens_have_a_focal_length_in_range() -> None:
+    """Refused as the camera is made, not while it draws."""
+    lens = CameraIntrinsics(width=64, height=48, fx_px=4e5, fy_px=4e5)
+    assert Camera(intrinsics=lens, picture=PictureSettings(supersampling=2)).of_samples()
+    with pytest.raises(InvalidRequest, match="at most 2 for fx_px = 400000"):
+        Camera(intrinsics=lens, picture=PictureSettings(supersampling=3))
+
+
 @given(LENSES, st.integers(2, 4))
 def test_samples_lie_in_their_pixels(lens: CameraIntrinsics, times: int) -> None:
     """With supersampling and half a pixel apart: one ray is at one place of the picture."""
