@@ -25,7 +25,7 @@ from sailenv_ros.simulation.script.scenario import SceneOverlay
 from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.space.grid import map_free_space
 from sailenv_ros.space.outlines import solids_of
-from sailenv_ros.types.labels import UNLABELLED_CATEGORY
+from sailenv_ros.types.labels import ROOM_PARTS, UNLABELLED_CATEGORY
 from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.world.world import World
 
@@ -34,8 +34,8 @@ __all__ = ["DOOR_STEPS", "Door", "OwnObject", "Room", "RoomOrder", "open_room"]
 DOOR_STEPS = 8
 """Equal steps from shut to open."""
 
-STRUCTURE = frozenset({"wall", "floor", "ceiling", "window", "door", "curtain", "plane"})
-"""Categories of the parts of rooms: nobody searches for them."""
+NOT_SOUGHT = ROOM_PARTS | {"plane"}
+"""Categories that nobody searches for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +166,7 @@ class Room:
             one = drawn.instance
             labelled = one.category_id not in (0, UNLABELLED_CATEGORY)
             within = drawn.outside is None and bool(drawn.model.parts)
-            if labelled and within and one.category not in STRUCTURE and one.name not in own:
+            if labelled and within and one.category not in NOT_SOUGHT and one.name not in own:
                 found.setdefault(one.category, []).append(row)
         return {category: tuple(rows) for category, rows in sorted(found.items())}
 

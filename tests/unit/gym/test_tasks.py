@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -218,6 +219,19 @@ def test_an_object_that_is_only_near_is_not_found(make: Make) -> None:
     env.reset(seed=0)
     *_, info = env.step(0)
     assert not info["success"]
+
+
+def test_parts_of_the_room_are_not_sought(make: Make, tmp_path: Path) -> None:
+    """Not even its skirting, which is a category like others."""
+    scene = tmp_path / "skirted.yaml"
+    objects = "[{name: chair, asset: cube, category: chair, scale: 0.4, position: [0, 0, 0.2]}]"
+    scene.write_text(
+        f"version: 1\nroom: {{size: [4, 3, 2.4], skirting: {{height: 0.1}}}}\nobjects: {objects}\n"
+    )
+    env = make("Search", rooms=[str(scene)])
+    env.reset(seed=0)
+    assert "skirting" in {one.instance.category for one in env.room.snapshot.contents.instances}
+    assert list(env.room.objects) == ["chair"]
 
 
 def test_categories_that_cannot_be_found_are_refused(make: Make) -> None:
