@@ -29,15 +29,15 @@ from sailenv_ros import AgentSpec, CameraIntrinsics, Simulation
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.frame.motion import ObjectPoints, SceneGeometry, track
-from sailenv_ros.native.deformation_kernels import skin
 from sailenv_ros.postures.figure import figure_of
 from sailenv_ros.postures.footsteps import standing_feet, way_along
-from sailenv_ros.postures.skeleton import skin_matrices
+from sailenv_ros.postures.skeleton import joint_frames, skin_matrices
 from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.rays.opaque_models import deformed_model
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.geometry import look_at
 from sailenv_ros.world.person_body import PersonBody
+from sailenv_ros.world.skin import skin_over
 from sailenv_ros.world.world import World
 
 SCENE = """
@@ -217,13 +217,8 @@ def clothes() -> None:
         }
         outside, count = 0, 0
         for time_s in (0.0, 1.3 * stride.step_s, 1.8 * stride.step_s):
-            matrices = np.ascontiguousarray(
-                skin_matrices(rig, walking_posture(rig, way.at(time_s), time_s))
-            )
-            moved = [
-                skin(part.mesh.positions, part.mesh.normals, b, w, matrices, threads=2)
-                for part, b, w in zip(asset.model.parts, rig.bones, rig.weights, strict=True)
-            ]
+            frames = joint_frames(rig, walking_posture(rig, way.at(time_s), time_s))
+            moved = skin_over(asset.model, rig, skin_matrices(rig, *frames)).meshes
             out_m = []
             for place in worn:
                 part = asset.model.parts[place]

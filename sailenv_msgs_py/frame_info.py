@@ -13,6 +13,7 @@ from std_msgs.msg import Header
 
 from sailenv_msgs.msg import FrameInfo
 from sailenv_msgs.msg import RowPoses as RowPosesMsg
+from sailenv_msgs_py.skeleton_msgs import skeletons_from_msgs, skeletons_to_msgs
 from sailenv_msgs_py.stamps import stamp_from_ns
 from sailenv_msgs_py.transforms import optical_pose_to_msg, pose_from_msg
 from sailenv_ros.errors import InvalidRequest
@@ -146,6 +147,7 @@ def states_of_frame_info(msg: FrameInfo) -> InstanceStates | None:
         angular_velocities=rows[:, 10:13],
         scales=rows[:, 13:],
         histories=np.asarray(msg.instance_histories, np.int64),
+        skeletons=skeletons_from_msgs(msg.skeletons),
     )
 
 
@@ -190,8 +192,8 @@ def _row_poses_to_msg(rows: RowPoses) -> RowPosesMsg:
     )
 
 
-def _states_fields(states: InstanceStates | None) -> dict[str, array[Any]]:
-    """Return the flat arrays of the message; arrays of Python are taken without a look at each."""
+def _states_fields(states: InstanceStates | None) -> dict[str, Any]:
+    """Return the fields of the message; arrays of Python are taken without a look at each."""
     if states is None:
         return {}
     columns = (
@@ -202,4 +204,5 @@ def _states_fields(states: InstanceStates | None) -> dict[str, array[Any]]:
         "instance_ids": array("H", states.ids.tobytes()),
         "instance_histories": array("I", states.histories.astype(np.uint32).tobytes()),
         "instance_states": array("d", np.concatenate(columns, axis=1).tobytes()),
+        "skeletons": skeletons_to_msgs(states.skeletons),
     }

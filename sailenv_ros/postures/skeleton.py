@@ -56,9 +56,8 @@ def joint_frames(rig: Rig, posture: Posture) -> tuple[Doubles, Doubles]:
     return turns, places
 
 
-def skin_matrices(rig: Rig, posture: Posture) -> Doubles:
-    """Return (J, 3, 4): where each joint takes what is at rest."""
-    turns, places = joint_frames(rig, posture)
+def skin_matrices(rig: Rig, turns: Doubles, places: Doubles) -> Doubles:
+    """Return (J, 3, 4): where each joint takes what is at rest; see `joint_frames`."""
     result = np.empty((len(rig.names), 3, 4))
     result[:, :, :3] = turns
     result[:, :, 3] = places - np.einsum("jik,jk->ji", turns, rig.heads)

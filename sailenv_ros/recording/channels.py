@@ -79,8 +79,8 @@ _STAMPED = frozenset(AGENT_TOPICS.values())
 
 _LITTLE_ENDIAN_CDR = b"\x00\x01"
 
-_NEWER_FIELD = "RowPoses[] row_poses"
-"""The newest field of `FrameInfo`; version 0.2.0 lacked it and the three fields before it."""
+_NEWER_FIELD = "Skeleton[] skeletons"
+"""The newest field of `FrameInfo`; version 0.2.0 lacked it and the four fields before it."""
 
 _NEWER_PART_OF_SCENES = "float64 auto_exposure_s"
 """The newest field within the parts of `SceneInfo`; version 0.2.0 lacked it."""

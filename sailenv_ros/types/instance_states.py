@@ -52,7 +52,7 @@ class InstanceStates(RebuiltByFields):
     deformations : mapping of int to Deformation
         Vertices of the instances that deform, by their ids. Messages and files leave them out.
     skeletons : mapping of int to Skeleton
-        Of people, by their ids; left out there, too.
+        Of people, by their ids.
 
     Raises
     ------
@@ -91,6 +91,8 @@ class InstanceStates(RebuiltByFields):
             if not np.isfinite(array).all():
                 raise InvalidRequest(f"{name} of instances", array, "finite numbers")
             object.__setattr__(self, name, array)
+        if not set(self.skeletons) <= set(ids.tolist()):
+            raise InvalidRequest("skeletons", sorted(self.skeletons), "those of instances")
         norms = np.linalg.norm(self.orientations, axis=1)
         if np.any(np.abs(norms - 1.0) > 1e-3):
             raise InvalidRequest("orientations of instances", norms, "unit quaternions x, y, z, w")

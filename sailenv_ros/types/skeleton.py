@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import InvalidRequest
+
 __all__ = ["COCO_KEYPOINTS", "COCO_SKELETON", "Skeleton"]
 
 _SIDED = ("eye", "ear", "shoulder", "elbow", "wrist", "hip", "knee", "ankle")
@@ -33,16 +35,38 @@ class Skeleton:
     joint_names : (J,) tuple of str
     parents : (J,) int64
         Of joints; -1 for the root.
-    joints : (J, 3) float64
-        World frame [m].
+    world_from_joint : (J, 3, 4) float64
+        Pose of each joint, whose axes at rest are those of the body frame [-, m].
     point_names : (P,) tuple of str
         `COCO_KEYPOINTS`.
     points : (P, 3) float64
         World frame [m].
+
+    Raises
+    ------
+    InvalidRequest
+        If the arrays do not fit each other, a number is not finite, or a joint comes before its
+        parent.
     """
 
     joint_names: tuple[str, ...]
     parents: NDArray[np.int64]
-    joints: NDArray[np.float64]
+    world_from_joint: NDArray[np.float64]
     point_names: tuple[str, ...]
     points: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        joints, points = len(self.joint_names), len(self.point_names)
+        shapes = self.parents.shape, self.world_from_joint.shape, self.points.shape
+        wanted = (joints,), (joints, 3, 4), (points, 3)
+        if shapes != wanted:
+            raise InvalidRequest("arrays of a skeleton", shapes, f"of the shapes {wanted}")
+        if not (np.isfinite(self.world_from_joint).all() and np.isfinite(self.points).all()):
+            raise InvalidRequest("skeleton", "a number that is not finite", "finite numbers")
+        if not ((self.parents >= -1) & (self.parents < np.arange(joints))).all():
+            raise InvalidRequest("parents of joints", self.parents, "joints that come before")
+
+    @property
+    def joints(self) -> NDArray[np.float64]:
+        """(J, 3) float64: places of the joints, world frame [m]."""
+        return self.world_from_joint[:, :, 3]

@@ -67,6 +67,7 @@ async def overlay(
     boxes: bool = False,
     space: bool = False,
     circle: bool = False,
+    people: bool = False,
     track: str = "",
     frame: int | None = None,
 ) -> Overlay:
@@ -75,7 +76,9 @@ async def overlay(
     movers = {mover.name: mover for mover in context.info.movers}
     if track and track not in movers:
         raise UnknownName("mover", track[:80], movers)
-    wanted = partial(overlay_of, boxes=boxes, space=space, whole=whole, circle=circle)
+    wanted = partial(
+        overlay_of, boxes=boxes, space=space, whole=whole, circle=circle, people=people
+    )
     if track:
         mover = movers[track]
         wanted = partial(wanted, track=mover.waypoints, loop=mover.loop)

@@ -1,4 +1,4 @@
-"""Overlay of a frame on the page: boxes and outlines of objects, a track, the image circle.
+"""Overlay of a frame on the page: boxes and outlines of objects, skeletons, a track, a circle.
 
 `Frame` in, JSON out. Whatever lies in space comes into the picture here, through the frame's own
 lens: the page draws pixels and knows no lens.
@@ -16,11 +16,14 @@ from sailenv_ros.frame.lens_rays import tells_depth
 from sailenv_ros.frame.truth.object_table import EDGES, ObjectTable
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.skeleton import COCO_SKELETON
 from sailenv_ros.viewer.encoding import outline
-from sailenv_ros.viewer.messages import Overlay
+from sailenv_ros.viewer.messages import Overlay, PersonLines
 from sailenv_ros.viewer.scene_messages import Segment
 
 __all__ = ["image_circle", "overlay_of", "seen_points", "seen_segments"]
+
+_LIMBS = [(first - 1, last - 1) for first, last in COCO_SKELETON]
 
 PIECES = 16
 """Straight pieces that a line in space is drawn as where the lens bends it."""
@@ -35,6 +38,7 @@ def overlay_of(
     track: Sequence[Pose] = (),
     loop: bool = False,
     circle: bool = False,
+    people: bool = False,
 ) -> Overlay:
     """Return what is drawn over a frame.
 
@@ -53,6 +57,8 @@ def overlay_of(
         Whether a line leads from the last one to the first.
     circle : bool
         Whether the border of what the lens sees is wanted.
+    people : bool
+        Whether the keypoints of people are wanted, with the lines between them.
 
     Returns
     -------
@@ -66,6 +72,7 @@ def overlay_of(
         "waypoints": [],
         "track": [],
         "circle": image_circle(frame.camera.intrinsics) if circle else [],
+        "people": _people(frame) if people else [],
     }
     if boxes or space:
         table = frame.objects.select(frame.objects.visible)
@@ -149,6 +156,20 @@ def image_circle(intrinsics: CameraIntrinsics) -> list[list[int]]:
     """
     valid = intrinsics.valid_pixels()
     return [] if valid.all() else outline(valid.astype(np.uint16), 1)
+
+
+def _people(frame: Frame) -> list[PersonLines]:
+    """Return the lines between the keypoints of each person, and those in view: u, v, seen."""
+    found: list[PersonLines] = []
+    for id_ in frame.states.skeletons if frame.states is not None else ():
+        points = frame.keypoints(id_)
+        first, last = (points.world[list(ends)] for ends in zip(*_LIMBS, strict=True))
+        lines = [piece for line in seen_segments(frame.camera, first, last) for piece in line]
+        places = np.round(points.pixels, 1).tolist()
+        inside = points.hidden_by >= 0
+        told = zip(places, points.visible.tolist(), inside.tolist(), strict=True)
+        found.append((id_, lines, [(u, v, seen) for (u, v), seen, there in told if there]))
+    return found
 
 
 def _edges(camera: Camera, table: ObjectTable) -> list[tuple[int, list[Segment]]]:

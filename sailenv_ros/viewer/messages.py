@@ -257,12 +257,16 @@ class PixelValues(TypedDict):
     flow: NotRequired[tuple[float, float] | None]
 
 
+PersonLines = tuple[int, list[Segment], list[tuple[float, float, bool]]]
+"""Id of a person, lines between its keypoints, and those in view: u, v, whether it is seen."""
+
+
 class Overlay(TypedDict):
     """Drawn over a frame [px].
 
     ``boxes``: id, left, top, right, bottom. ``edges``: id, and pieces of lines. ``whole``: closed
     lines u, v, u, v, …, as is ``circle``, the border of what the lens sees. ``waypoints``: number
-    from 1 and place; ``track``: the pieces between them.
+    from 1 and place; ``track``: the pieces between them. ``people``: see `PersonLines`.
     """
 
     boxes: list[tuple[int, int, int, int, int]]
@@ -271,6 +275,7 @@ class Overlay(TypedDict):
     waypoints: list[tuple[int, float, float]]
     track: list[Segment]
     circle: list[list[int]]
+    people: list[PersonLines]
 
 
 class PlacedObject(ObjectValues):

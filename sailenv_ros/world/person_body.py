@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.native.deformation_kernels import skin
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.postures.skeleton import joint_frames, skin_matrices
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.geometry import Pose
@@ -26,6 +24,7 @@ from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
 from sailenv_ros.world.labelled_pieces import LabelledPiece
 from sailenv_ros.world.limbs import Limbs
 from sailenv_ros.world.placement import Placement
+from sailenv_ros.world.skin import skin_over
 from sailenv_ros.world.walker import Walker
 
 __all__ = ["PersonBody", "deformations_of", "skeletons_of"]
@@ -168,28 +167,11 @@ class PersonBody(Body):
 
     def deformation(self) -> Deformation:
         """Return where its skin is now; the same object until it moves."""
-        posture = self.walker.posture
-        matrices = np.ascontiguousarray(skin_matrices(self._rig, posture))
+        turns, places = joint_frames(self._rig, self.walker.posture)
+        matrices = skin_matrices(self._rig, turns, places)
         key = matrices.tobytes()
         if self._posed is None or self._posed[0] != key:
-            model, rig = self.placement.asset.model, self._rig
-
-            def made() -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]:
-                return [
-                    skin(
-                        part.mesh.positions,
-                        part.mesh.normals,
-                        bones,
-                        weights,
-                        matrices,
-                        threads=thread_count(),
-                    )
-                    for part, bones, weights in zip(
-                        model.parts, rig.bones, rig.weights, strict=True
-                    )
-                ]
-
-            self._posed = key, Deformation(model, made)
+            self._posed = key, skin_over(self.placement.asset.model, self._rig, matrices)
         return self._posed[1]
 
     def skeleton(self) -> Skeleton:
@@ -202,10 +184,13 @@ class PersonBody(Body):
             for point in rig.points
         ]).reshape(-1, 3)  # fmt: skip
         matrix = self.walker.matrix
+        world_from_joint = np.empty((len(places), 3, 4))
+        world_from_joint[:, :, :3] = matrix[:3, :3] @ turns
+        world_from_joint[:, :, 3] = self._scale * places @ matrix[:3, :3].T + matrix[:3, 3]
         return Skeleton(
             joint_names=rig.names,
             parents=rig.parents,
-            joints=self._scale * places @ matrix[:3, :3].T + matrix[:3, 3],
+            world_from_joint=world_from_joint,
             point_names=tuple(point.name for point in rig.points),
             points=self._scale * points @ matrix[:3, :3].T + matrix[:3, 3],
         )

@@ -23,7 +23,7 @@ from sailenv_ros.errors import InvalidRequest, RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import SceneGeometry, Tracks, track
 from sailenv_ros.frame.pictures.codecs import decode_picture
-from sailenv_ros.simulation.recorded_geometry import recorded_geometry
+from sailenv_ros.simulation.recorded_geometry import recorded_geometry, with_skin
 
 __all__ = ["TapVidExport", "tapvid_entry"]
 
@@ -56,7 +56,7 @@ class TapVidExport(DatasetFormat):
             raise RecordingError("TAP-Vid needs the states of instances, which were not recorded")
         sample.scene_info("TAP-Vid")
         write_png(self._picture(sample.number), frame["rgb"])
-        self._frames.append(replace(frame, views={}))
+        self._frames.append(with_skin(replace(frame, views={})))
         return WriteResult(written={"pictures": 1})
 
     def finish(self, records: Sequence[Record]) -> None:

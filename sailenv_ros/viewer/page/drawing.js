@@ -49,6 +49,26 @@ export function drawObjects(pen, overlay, line) {
 }
 
 /**
+ * Keypoints of people with the lines between them; hollow where something hides them.
+ * @param {Pen} pen
+ * @param {Overlay} overlay
+ * @param {number} line
+ */
+export function drawPeople(pen, { people }, line) {
+  pen.lineWidth = 2 * line;
+  for (const [id, limbs, points] of people) {
+    pen.strokeStyle = pen.fillStyle = colourOf(id);
+    pen.stroke(pieces(limbs));
+    for (const [u, v, seen] of points) {
+      pen.beginPath();
+      pen.arc(u, v, 3.5 * line, 0, 2 * Math.PI);
+      if (seen) pen.fill();
+      pen.stroke();
+    }
+  }
+}
+
+/**
  * A mover's track.
  * @param {Pen} pen
  * @param {Overlay} overlay

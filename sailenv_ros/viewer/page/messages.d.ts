@@ -342,6 +342,7 @@ export interface Overlay {
   waypoints: ([number, number, number])[];
   track: ([number, number, number, number])[];
   circle: number[][];
+  people: ([number, ([number, number, number, number])[], ([number, number, boolean])[]])[];
 }
 
 /** An object that was set down; `held` if it was made static to stay where it is. */
@@ -540,7 +541,7 @@ export interface Commands {
   get_object: { values: { obj: number | string }; result: ObjectValues };
   lens: { values: { width: number; height: number; fov_deg: number }; result: null };
   move_object: { values: { obj: number | string; position?: number | readonly number[] | null; rotation?: number | readonly number[] | null; pose?: { position: readonly number[]; rotation: readonly number[] } | null; teleport?: boolean }; result: ObjectValues };
-  overlay: { values: { whole?: number; boxes?: boolean; space?: boolean; circle?: boolean; track?: string; frame?: number | null }; result: Overlay };
+  overlay: { values: { whole?: number; boxes?: boolean; space?: boolean; circle?: boolean; people?: boolean; track?: string; frame?: number | null }; result: Overlay };
   pause: { values: {}; result: null };
   place: { values: { obj: number; u: number; v: number; frame?: number | null }; result: PlacedObject };
   probe: { values: { u: number; v: number; frame?: number | null }; result: PixelValues };

@@ -2,7 +2,7 @@
 // The pictures: tiles of views, what is drawn over them, and which pixel a pointer is on.
 
 import { $, around, el } from "./dom.js";
-import { drawCircle, drawObjects, drawOutline, drawWaypoints } from "./drawing.js";
+import { drawCircle, drawObjects, drawOutline, drawPeople, drawWaypoints } from "./drawing.js";
 import { shownViews } from "./store.js";
 
 /** @import {FrameHead} from "./messages.js" */
@@ -131,7 +131,7 @@ export class Stage {
     bitmap.close();
   }
 
-  /** Draw what lies over the pictures: objects, the selected one's outline, image circle, waypoints. */
+  /** Draw what lies over the pictures: objects, people's joints, the selected one's outline, image circle, waypoints. */
   #drawOver() {
     const { state } = this.#store;
     const { frame, overlay, views } = state;
@@ -153,6 +153,7 @@ export class Stage {
       const line = frame.width / box.width;
       const large = view === views.main;
       if (large && overlay) drawObjects(pen, overlay, line);
+      if (large && overlay) drawPeople(pen, overlay, line);
       drawOutline(pen, frame.outline ?? [], large ? line : line / 2);
       if (overlay) drawCircle(pen, overlay, large ? line : line / 2);
       if (large && overlay) drawWaypoints(pen, overlay, line);

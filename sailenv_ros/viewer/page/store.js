@@ -23,7 +23,7 @@
  * @property {ObjectMessage | null} object What the simulator tells of it.
  * @property {boolean} placing Whether the next click says where it stands.
  * @property {PixelValues | null} pixel The values under the pointer.
- * @property {{ boxes: boolean, space: boolean, whole: boolean, circle: boolean }} draws What is drawn over the picture.
+ * @property {{ boxes: boolean, space: boolean, whole: boolean, people: boolean, circle: boolean }} draws What is drawn over the picture.
  * @property {Overlay | null} overlay What is known for that.
  * @property {boolean} pathAlways Whether the waypoints are shown with any panel.
  */
@@ -34,7 +34,7 @@ function initial() {
     online: true, hello: null, scene: null, instances: new Map(), stats: null, frame: null,
     agent: "", lens: { width: 640, height: 480, fov_deg: 60 }, views: { main: "", all: true, chosen: [] },
     tab: "View", selected: 0, object: null, placing: false, pixel: null,
-    draws: { boxes: false, space: false, whole: false, circle: false }, overlay: null, pathAlways: false,
+    draws: { boxes: false, space: false, whole: false, people: false, circle: false }, overlay: null, pathAlways: false,
   };
 }
 

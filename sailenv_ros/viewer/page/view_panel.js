@@ -18,6 +18,7 @@ const OVERLAYS = [
   { key: "boxes", label: "boxes", title: "The box around what is visible of each object" },
   { key: "space", label: "boxes in space", title: "The oriented box of each object" },
   { key: "whole", label: "whole object", title: "The outline of the object under the pointer, also of what is hidden" },
+  { key: "people", label: "people's joints", title: "The keypoints of people; hollow where something hides them" },
   { key: "circle", label: "image circle", title: "The border of what the lens sees" },
 ];
 

@@ -65,6 +65,7 @@ from sailenv_ros.types.picture_settings import LIMITS, PictureSettings
 from sailenv_ros.types.rigid_body import RIGID_BODY_LIMITS, RigidBody
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.scene_info import MoverInfo, SceneInfo
+from sailenv_ros.types.skeleton import Skeleton
 from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS
 from tests.support.small_frame import small_frame
 
@@ -275,6 +276,23 @@ def scene_infos(draw: st.DrawFn) -> SceneInfo:
 
 
 @st.composite
+def skeletons(draw: st.DrawFn) -> Skeleton:
+    """Return skeletons of up to three joints and two points."""
+    joints, points = draw(st.integers(0, 3)), draw(st.integers(0, 2))
+    poses = [draw(POSES).matrix()[:3] for _ in range(joints)]
+    return Skeleton(
+        joint_names=tuple(draw(TEXTS) for _ in range(joints)),
+        parents=np.array([draw(st.integers(-1, joint - 1)) for joint in range(joints)], np.int64),
+        world_from_joint=np.array(poses, np.float64).reshape(-1, 3, 4),
+        point_names=tuple(draw(TEXTS) for _ in range(points)),
+        points=np.array([draw(TRIPLES) for _ in range(points)], np.float64).reshape(-1, 3),
+    )
+
+
+SKELETONS = skeletons()
+
+
+@st.composite
 def instance_states(draw: st.DrawFn) -> InstanceStates:
     """Return states of up to three instances."""
     ids = sorted(draw(st.sets(st.integers(1, 65535), max_size=3)))
@@ -291,6 +309,7 @@ def instance_states(draw: st.DrawFn) -> InstanceStates:
         angular_velocities=column(TRIPLES, 3),
         scales=column(TRIPLES, 3),
         histories=np.array([draw(st.integers(0, 2**32 - 1)) for _ in ids], np.int64),
+        skeletons={id_: draw(SKELETONS) for id_ in ids if draw(st.booleans())},
     )
 
 
@@ -553,10 +572,32 @@ def same_arrays(
     assert (read is None) == (written is None)
     for name in () if read is None else [entry.name for entry in dataclasses.fields(read)]:
         one, other = getattr(read, name), getattr(written, name)
-        if isinstance(other, Mapping):  # vertices and skeletons do not travel
+        if name == "deformations":  # vertices do not travel
             assert not one
             continue
-        assert (one.dtype, one.shape, one.tobytes()) == (other.dtype, other.shape, other.tobytes())
+        if name == "skeletons":
+            assert list(one) == list(other)
+            for id_ in other:
+                same_skeleton(one[id_], other[id_])
+            continue
+        same_bytes(one, other)
+
+
+def same_bytes(one: np.ndarray, other: np.ndarray) -> None:
+    assert (one.dtype, one.shape, one.tobytes()) == (other.dtype, other.shape, other.tobytes())
+
+
+def same_skeleton(read: Skeleton, written: Skeleton) -> None:
+    for field in dataclasses.fields(written):
+        one, other = getattr(read, field.name), getattr(written, field.name)
+        if isinstance(other, tuple):
+            assert one == other
+        else:
+            assert (one.dtype, one.shape, one.tobytes()) == (
+                other.dtype,
+                other.shape,
+                other.tobytes(),
+            )
 
 
 @pytest.mark.parametrize("field", ["instance_ids", "instance_histories", "instance_states"])
@@ -571,6 +612,39 @@ def test_states_that_do_not_fit_are_refused(field: str) -> None:
     assert states_of_frame_info(msg) is not None
     setattr(msg, field, getattr(msg, field)[:-1])
     with pytest.raises(InvalidRequest, match="instance"):
+        states_of_frame_info(msg)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("id", 8),
+        ("joint_names", ["root"]),
+        ("parents", [0, 0]),
+        ("parents", [-2, 0]),
+        ("joint_poses", [0.5] * 23),
+        ("joint_poses", [float("nan")] * 24),
+        ("points", [0.5, 0.5]),
+        ("points", [float("inf")] * 3),
+        ("point_names", []),
+    ],
+)
+def test_skeletons_that_do_not_fit_are_refused(field: str, value: Any) -> None:
+    """Two joints and a keypoint of the only instance; each joint comes after its parent."""
+    told = msgs.Skeleton(
+        id=7, joint_names=["root", "head"], parents=[-1, 0], joint_poses=[0.5] * 24,
+        point_names=["nose"], points=[0.5] * 3,
+    )  # fmt: skip
+    state = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, *[0.5] * 9]
+    msg = msgs.FrameInfo(
+        has_states=True, instance_ids=[7], instance_histories=[1], instance_states=state,
+        skeletons=[told],
+    )  # fmt: skip
+    states = states_of_frame_info(msg)
+    assert states is not None
+    assert states.skeletons[7].joints.tolist() == [[0.5] * 3] * 2
+    setattr(told, field, value)
+    with pytest.raises(InvalidRequest, match=r"skeleton|joint"):
         states_of_frame_info(msg)
 
 
@@ -617,7 +691,9 @@ def test_frame_infos(frame: Frame, views: tuple[str, ...], depth_range_m: float)
     told.pop("randomised")
     assert lesson_of_frame_info(msg) == frame.lesson
     told.pop("lesson")
-    for name in [name for name in told if name.startswith(("instance_", "has_", "row_poses"))]:
+    for name in [
+        name for name in told if name.startswith(("instance_", "has_", "row_poses", "skeletons"))
+    ]:
         told.pop(name)
     assert told == {
         "agent": frame.agent,

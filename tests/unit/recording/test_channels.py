@@ -90,6 +90,7 @@ def test_schemas_hold_everything_they_refer_to() -> None:
         "MSG: geometry_msgs/Pose",
         "MSG: geometry_msgs/Quaternion",
         "MSG: sailenv_msgs/RowPoses",
+        "MSG: sailenv_msgs/Skeleton",
         "MSG: std_msgs/Header",
     ]
     assert text.count("=" * 80 + "\nMSG: ") == len(parts)

@@ -15,6 +15,8 @@ from sailenv_ros.errors import InvalidState
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.skeleton import COCO_KEYPOINTS, COCO_SKELETON, Skeleton
 from sailenv_ros.viewer.frame_overlay import (
     PIECES,
     image_circle,
@@ -23,6 +25,7 @@ from sailenv_ros.viewer.frame_overlay import (
     seen_segments,
 )
 from sailenv_ros.viewer.scene_json import lens_to_json
+from tests.support.small_frame import small_frame
 from tests.unit.frame.truth.test_object_table import frame_of
 
 FISHEYE = CameraIntrinsics(
@@ -137,3 +140,34 @@ def test_a_lens_is_told_by_its_numbers() -> None:
     assert (plain["model"], plain["coefficients"]) == ("pinhole", [])
     flat = CameraIntrinsics(fx_px=100.0, fy_px=100.0, distortion_model="orthographic")
     assert lens_to_json(flat)["max_angle_deg"] is None
+
+
+def test_people_are_lines_between_keypoints_that_are_seen_or_hidden() -> None:
+    """Keypoints of COCO two metres ahead; before those on the left stands another thing."""
+    across = np.linspace(-0.5, 0.5, len(COCO_KEYPOINTS))
+    points = np.stack([np.full_like(across, 2.0), -across, 0.3 * across], axis=1)
+    skeleton = Skeleton(
+        joint_names=("root",), parents=np.array([-1]), world_from_joint=np.eye(4)[None, :3],
+        point_names=COCO_KEYPOINTS, points=points,
+    )  # fmt: skip
+    states = InstanceStates(
+        ids=np.array([3], np.uint16), positions=np.zeros((1, 3)),
+        orientations=np.array([[0.0, 0.0, 0.0, 1.0]]), linear_velocities=np.zeros((1, 3)),
+        angular_velocities=np.zeros((1, 3)), skeletons={3: skeleton},
+    )  # fmt: skip
+    instance = np.full((60, 80), 3, np.uint16)
+    depth = np.full((60, 80), 2.0, np.float32)
+    instance[:, :40], depth[:, :40] = 9, 1.0
+    frame = replace(
+        small_frame({"instance": instance, "depth": depth}, 80, 60), states=states,
+        info=frame_of().info,
+    )  # fmt: skip
+    told = json.loads(json.dumps(overlay_of(frame, people=True)))
+    ((id_, limbs, places),) = told["people"]
+    assert (id_, len(limbs), len(places)) == (3, len(COCO_SKELETON), len(COCO_KEYPOINTS))
+    pixels = np.round(seen_points(frame.camera, points), 1).tolist()
+    assert [place[:2] for place in places] == pixels
+    assert [seen for *_, seen in places] == [u >= 39.5 for u, _ in pixels]
+    first, last = COCO_SKELETON[0]
+    assert limbs[0] == [*pixels[first - 1], *pixels[last - 1]]
+    assert not overlay_of(frame)["people"]

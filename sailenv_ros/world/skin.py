@@ -1,0 +1,75 @@
+"""Skin over a skeleton: joints in, the vertices of a model out."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.native.deformation_kernels import skin
+from sailenv_ros.native.library import thread_count
+from sailenv_ros.postures.skeleton import skin_matrices
+from sailenv_ros.types.deformation import Deformation
+from sailenv_ros.types.geometry import invert
+from sailenv_ros.types.model import Asset, Model
+from sailenv_ros.types.rig import Rig
+from sailenv_ros.types.skeleton import Skeleton
+
+__all__ = ["skin_over", "skin_over_skeleton"]
+
+Doubles = NDArray[np.float64]
+
+
+def skin_over(model: Model, rig: Rig, matrices: Doubles) -> Deformation:
+    """Return the vertices of a model.
+
+    Parameters
+    ----------
+    model : Model
+        At rest.
+    rig : Rig
+        Of that model.
+    matrices : (J, 3, 4) float64
+        Where each joint takes what is at rest, body frame before the scale.
+    """
+
+    def made() -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]:
+        parts = zip(model.parts, rig.bones, rig.weights, strict=True)
+        return [
+            skin(
+                *(part.mesh.positions, part.mesh.normals, bones, weights, matrices),
+                threads=thread_count(),
+            )
+            for part, bones, weights in parts
+        ]
+
+    return Deformation(model, made)
+
+
+def skin_over_skeleton(
+    asset: Asset, skeleton: Skeleton, world_from_body: Doubles, scale: float
+) -> Deformation:
+    """Return the vertices of a person whose joints are known in the world.
+
+    Parameters
+    ----------
+    asset : Asset
+        With a rig.
+    skeleton : Skeleton
+        Of the same joints.
+    world_from_body : (4, 4) float64
+    scale : float
+        Along all axes.
+
+    Raises
+    ------
+    InvalidRequest
+        If the asset has no such joints.
+    """
+    rig = asset.rig
+    if rig is None or rig.names != skeleton.joint_names:
+        raise InvalidRequest("asset", asset.name, "one with the joints of the skeleton")
+    body_from_world = invert(world_from_body)
+    rotation, joints = body_from_world[:3, :3], skeleton.world_from_joint
+    places = (joints[:, :, 3] @ rotation.T + body_from_world[:3, 3]) / scale
+    return skin_over(asset.model, rig, skin_matrices(rig, rotation @ joints[:, :, :3], places))
