@@ -18,8 +18,8 @@ from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.skeleton import COCO_SKELETON
 from sailenv_ros.viewer.encoding import outline
-from sailenv_ros.viewer.messages import Overlay, PersonLines
-from sailenv_ros.viewer.scene_messages import Segment
+from sailenv_ros.viewer.messages import Overlay
+from sailenv_ros.viewer.scene_messages import PersonLines, Segment
 
 __all__ = ["image_circle", "overlay_of", "seen_points", "seen_segments"]
 

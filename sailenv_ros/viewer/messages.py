@@ -13,7 +13,7 @@ from typing_extensions import NotRequired, TypedDict
 
 from sailenv_ros.types.joints import JointKind
 from sailenv_ros.types.view_spec import ViewDisplay
-from sailenv_ros.viewer.scene_messages import LensValues, PoseValues, Segment, Vector3
+from sailenv_ros.viewer.scene_messages import LensValues, PersonLines, PoseValues, Segment, Vector3
 
 __all__ = [
     "BehaviourInfo",
@@ -255,10 +255,6 @@ class PixelValues(TypedDict):
     instance_id: NotRequired[int]
     depth: NotRequired[float | Literal["near"] | None]
     flow: NotRequired[tuple[float, float] | None]
-
-
-PersonLines = tuple[int, list[Segment], list[tuple[float, float, bool]]]
-"""Id of a person, lines between its keypoints, and those in view: u, v, whether it is seen."""
 
 
 class Overlay(TypedDict):

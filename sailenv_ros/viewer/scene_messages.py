@@ -22,6 +22,7 @@ __all__ = [
     "LightNews",
     "LookAtNews",
     "MoverNews",
+    "PersonLines",
     "PoseValues",
     "SceneMessage",
     "Segment",
@@ -32,6 +33,9 @@ Vector3 = tuple[float, float, float]
 
 Segment = tuple[float, float, float, float]
 """Ends u, v, u, v of a straight piece of a line [px]."""
+
+PersonLines = tuple[int, list[Segment], list[tuple[float, float, bool]]]
+"""Id of a person, lines between its keypoints, and those in view: u, v, whether it is seen."""
 
 
 class PoseValues(TypedDict):
