@@ -9,6 +9,7 @@ from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.robots import RobotState
 from sailenv_ros.world.body_table import BodyTable
 from sailenv_ros.world.bullet import BulletClient
+from sailenv_ros.world.engine_settings import subdivide_steps
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.robot import Robot
 from sailenv_ros.world.robot_placements import RobotPlacement, link_name, link_placements
@@ -72,6 +73,7 @@ class RobotTable:
             return self._begin(placement)
         except BaseException:
             self._robots.pop(name, None)
+            subdivide_steps(self._client, robots=bool(self))
             self._bodies.remove_all(added)
             raise
 
@@ -82,6 +84,7 @@ class RobotTable:
         numbers = [number for number, body in self._bodies.items() if id(body) in own]
         self._bodies.remove_all(numbers)
         del self._robots[robot.name]
+        subdivide_steps(self._client, robots=bool(self))
         self._firsts -= {robot.name}
 
     def state(self, robot: Robot, sim_time_ns: int) -> RobotState:
@@ -112,6 +115,7 @@ class RobotTable:
     def _begin(self, placement: RobotPlacement) -> Robot:
         robot = Robot(self._client, placement, self._bodies_of(placement))
         self._robots[robot.name] = robot
+        subdivide_steps(self._client, robots=True)
         robot.prepare()
         return robot
 
