@@ -13,6 +13,7 @@ Every sentence says what was wrong and what is accepted, with the names that the
     ├── InternalFault           an error of the simulator itself
     ├── SceneError              one or more errors in a scene file, each with file:line:column
     ├── AssetError              a model, texture or pack that cannot be used
+    │   └── AssetMissing        a file that is not where it is looked for
     ├── PhysicsError            the physics engine refused a call or diverged
     ├── RenderError             a picture could not be rendered
     │   ├── ContextError        no OpenGL context could be created
@@ -201,6 +202,10 @@ class AssetError(SailenvError):
         self.asset = asset
         self.why = why
         super().__init__(f"asset {asset!r}: {why}")
+
+
+class AssetMissing(AssetError):
+    """A file of a model or robot that is not where it is looked for."""
 
 
 class PhysicsError(SailenvError):

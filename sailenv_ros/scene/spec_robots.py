@@ -135,7 +135,7 @@ class RobotSpec(Turned):
 
 
 def robots_stand(scene: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Refuse robots that are carried by what is missing or moves, and carried ones on wheels."""
+    """Refuse robots with names of objects, on what is missing or moves, and carried on wheels."""
     objects = scene.get("objects")
     named = {
         entry.get("name"): entry
@@ -144,7 +144,11 @@ def robots_stand(scene: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ..
     }
     robots = scene.get("robots")
     for index, robot in enumerate(robots if isinstance(robots, list | tuple) else ()):
-        if not isinstance(robot, Mapping) or not isinstance(robot.get("parent"), str):
+        if not isinstance(robot, Mapping):
+            continue
+        if isinstance(robot.get("name"), str) and robot["name"] in named:
+            yield ("robots", index, "name"), "is the name of an object, too"
+        if not isinstance(robot.get("parent"), str):
             continue
         place = ("robots", index, "parent")
         carrier = named.get(robot["parent"])

@@ -57,6 +57,11 @@ class RobotTable:
             raise UnknownName("robot", name, self._robots)
         return self._robots[name]
 
+    @property
+    def added(self) -> tuple[str, ...]:
+        """Names of the robots that came since the start."""
+        return tuple(name for name in self._robots if name not in self._firsts)
+
     def add(self, placement: RobotPlacement, categories: CategoryTable) -> Robot:
         """Put one more robot into the world, all of its links or none.
 
@@ -66,7 +71,7 @@ class RobotTable:
             If its name, or that of a link, is taken, or its description does not fit.
         """
         name = placement.spec.name
-        if name in self._robots:
+        if name in self._robots or self._bodies.id_of_name(name):
             raise NameTaken("robot", name)
         added = self._bodies.add_all(tuple(link_placements(placement, categories)))
         try:
