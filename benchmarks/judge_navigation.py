@@ -200,7 +200,7 @@ def doors_of(scene: str) -> tuple[tuple[float, float, float], list[tuple[float, 
 
 def drive(agent: Agent, driver: Driver, scene: str, file: Path, kept: list[Any]) -> str:
     """Drive through one apartment; return what went wrong, else nothing."""
-    agent.change_scene(scene)
+    agent.change_scene.within(1200)(scene)  # it is generated first
     start, goals = doors_of(agent.scene_text())
     for heard in (driver.maps, driver.odom, driver.scans):
         heard.messages.clear()
