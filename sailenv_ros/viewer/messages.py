@@ -35,6 +35,7 @@ __all__ = [
     "PlannedOpening",
     "RefusedMessage",
     "ReplyMessage",
+    "RobotAdded",
     "RoomKind",
     "RoomMade",
     "RoomSet",
@@ -322,6 +323,13 @@ class RoomKind(TypedDict):
 
     kind: str
     title: str
+
+
+class RobotAdded(TypedDict):
+    """A robot that was put into the scene: its name, and the id of its first link."""
+
+    id: int
+    name: str
 
 
 class RoomMade(TypedDict):
