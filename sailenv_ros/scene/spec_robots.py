@@ -46,6 +46,7 @@ class WheelsSpec(SceneModel):
     joints: tuple[_JointName, ...] = Field(
         default=(), max_length=32, description="default: those that turn without end"
     )
+    mover: Name | None = optional("a mover to which they take the robot, when told nothing else")
     radius: Annotated[float, Number(above=0.0, most=10.0, unit="m")] | None = optional(
         "default: of the geometry [m]"
     )

@@ -258,6 +258,7 @@ class _Storm:
         place = state.pose.position
         place.x, place.y, place.z = self._place()
         state.twist.linear.x = self._random.uniform(-2.0, 2.0)
+        state.acceleration.linear.x = 0.0  # that would be asked for, too
         self._call.set_state(name, state)
         told = self._send("GetEntityState", OK, entity=name).state
         assert abs(told.pose.position.x - place.x) < 1e-9

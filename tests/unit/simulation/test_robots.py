@@ -478,6 +478,41 @@ def test_behaviours_drive_robots(core: SynchronousSimulation, stage: Path) -> No
     assert state.linear_m_s == pytest.approx((1.0, 0.0, 0.0), abs=0.06)
 
 
+@pytest.mark.parametrize("mount", ["differential", "mecanum", "ackermann"])
+def test_a_mover_leads_a_robot_along_its_way(stage: Path, mount: str) -> None:
+    """At 0.3 m/s along y, the robot behind it; what it is told to do comes first."""
+    text = stage.read_text(encoding="utf-8")
+    text += """
+movers:
+  - name: guide
+    total_time: 20
+    loop: false
+    waypoints:
+      - {position: [0, -6, 0], rotation: [0, 0, 90]}
+      - {position: [0, 0, 0], rotation: [0, 0, 90]}
+"""
+    stage.write_text(text, encoding="utf-8")
+    core = lockstep_core(stage)
+    file = str(stage.parent / ("car.urdf" if mount == "ackermann" else "cart.urdf"))
+    led = {"wheels": {"mover": "guide"}}
+    with pytest.raises(UnknownName, match="mover"):
+        core.spawn_robot(file, mount=mount, settings={"wheels": {"mover": "nobody"}})
+    name = core.spawn_robot(file, (0, -7, 0), (0, 0, 90), mount=mount, settings=led)
+    core.step(240 * 12)
+    state, guide = core.get_robot(name), core.get_mover_pose("guide")
+    x, y, _ = state.pose.position_m
+    assert y == pytest.approx(guide.position_m[1] - 0.3 / 2.0, abs=0.05)
+    assert abs(x) < 0.05
+    assert math.hypot(*state.linear_m_s[:2]) == pytest.approx(0.3, abs=0.02)
+    core.drive_robot(-0.4, robot=name, seconds=1.0)
+    core.step(200)
+    assert core.get_robot(name).linear_m_s[0] == pytest.approx(-0.4, abs=0.01)
+    core.step(240 * 12)
+    assert core.get_robot(name).pose.position_m[1] == pytest.approx(0.0, abs=0.06)
+    assert abs(core.get_robot(name).linear_m_s[0]) < 0.01
+    core.close()
+
+
 def test_a_robot_comes_again_under_its_old_name_after_a_reset(
     core: SynchronousSimulation, stage: Path
 ) -> None:
