@@ -92,8 +92,7 @@ class UnknownName(InvalidRequest):
             accepted = f"one of: {shown} (did you mean {near[0]!r}?)"
         if also:
             accepted += f"; or {also}"
-        self.kind = kind
-        self.name = name
+        self.kind, self.name = kind, name
         self.known = tuple(names)
         super().__init__(kind, name, accepted)
 
@@ -182,9 +181,7 @@ class SceneDiagnostic:
 
     def __str__(self) -> str:
         place = f"{self.path}:{self.line}:{self.column}" if self.line else self.path
-        return (
-            f"{place}: {self.field}: {self.message}" if self.field else f"{place}: {self.message}"
-        )
+        return ": ".join((place, *filter(None, [self.field]), self.message))
 
 
 class SceneError(SailenvError):
@@ -199,8 +196,7 @@ class AssetError(SailenvError):
     """A model, texture or pack that cannot be used."""
 
     def __init__(self, asset: str, why: str) -> None:
-        self.asset = asset
-        self.why = why
+        self.asset, self.why = asset, why
         super().__init__(f"asset {asset!r}: {why}")
 
 
@@ -261,8 +257,7 @@ class DeadlineExceeded(SailenvError, TimeoutError):
     """Something did not happen in time: `waited_for`, in words, within `timeout_s` seconds."""
 
     def __init__(self, waited_for: str, timeout_s: float) -> None:
-        self.waited_for = waited_for
-        self.timeout_s = timeout_s
+        self.waited_for, self.timeout_s = waited_for, timeout_s
         super().__init__(f"timed out after {timeout_s:g} s while waiting for {waited_for}")
 
 

@@ -35,7 +35,6 @@ __all__ = [
     "PlannedOpening",
     "RefusedMessage",
     "ReplyMessage",
-    "RobotAdded",
     "RoomKind",
     "RoomMade",
     "RoomSet",
@@ -323,13 +322,6 @@ class RoomKind(TypedDict):
 
     kind: str
     title: str
-
-
-class RobotAdded(TypedDict):
-    """A robot that was put into the scene: its name, and the id of its first link."""
-
-    id: int
-    name: str
 
 
 class RoomMade(TypedDict):

@@ -10,7 +10,6 @@ from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.simulation.operations.edits import EditOperations
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable, Run
-from sailenv_ros.viewer.messages import RobotAdded
 from sailenv_ros.viewer.operation_commands import OPERATION_COMMANDS
 from sailenv_ros.viewer.picking import pixel_of, standing_point
 from sailenv_ros.viewer.recorded_commands import take_down
@@ -26,8 +25,8 @@ ROBOT_COMMANDS = CommandTable()
 @served
 async def add_robot(
     context: CommandContext, file: str, u: int, v: int, frame: int | None = None, mount: str = ""
-) -> RobotAdded:
-    """Put a robot of a Python package's file where a pixel is seen, its front towards the camera.
+) -> int:
+    """Put a robot of a package's file where a pixel is seen; tell the id of its first link.
 
     Other paths would let a page read what is on the simulator's computer.
     """
@@ -43,7 +42,7 @@ async def add_robot(
         after = await context.run(EditOperations.robot_record, name)
         take_down(context, f"adding {name}", ("adding", name), epoch, None, after)
         links = (await context.run(Operations.get_robot, name)).links
-    return {"id": next(iter(links.values())), "name": name}
+    return next(iter(links.values()))
 
 
 def _of_robots(run: Run) -> Run:

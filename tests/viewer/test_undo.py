@@ -75,7 +75,7 @@ async def test_robots_are_undone_as_a_whole(server: ViewerServer, still: Simulat
     async with page_of(server) as page:
         states = [by_name(still)]
         made = await page.ask("add_robot", file="pybullet_data:r2d2.urdf", u=80, v=90, mount="free")
-        assert made["name"] == "r2d2"
+        assert made == still.get_robot("r2d2").links["base_link"]
         states.append(by_name(still))
         assert len(states[1]) == len(states[0]) + 16
         still.put_joints({"head_swivel": 0.5})

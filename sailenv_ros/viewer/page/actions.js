@@ -127,7 +127,7 @@ export class Actions {
     if (!frame) return;
     const middle = { frame: frame.number, u: Math.floor(frame.width / 2), v: Math.floor(0.62 * frame.height) };
     const made = await this.try("add_robot", { file, ...middle });
-    if (made) this.select(made.id);
+    if (made) this.select(made);
   }
 
   /** @param {Pixel} at */

@@ -291,12 +291,6 @@ export interface LightAttributes {
   height_m?: number;
 }
 
-/** A robot that was put into the scene: its name, and the id of its first link. */
-export interface RobotAdded {
-  id: number;
-  name: string;
-}
-
 /** Keys of an object that can be changed; None takes the asset's own. It is moved otherwise. */
 export interface ObjectChanges {
   name?: string;
@@ -535,7 +529,7 @@ export type Shown = ShownMessage;
 export interface Commands {
   add_behaviour: { values: { obj: number | string; behaviour: Record<string, any> }; result: ObjectValues };
   add_light: { values: { light_type: "directional" | "point" | "spot" | "area"; light_name?: string | null; attributes?: LightAttributes | null }; result: string };
-  add_robot: { values: { file: string; u: number; v: number; frame?: number | null; mount?: string }; result: RobotAdded };
+  add_robot: { values: { file: string; u: number; v: number; frame?: number | null; mount?: string }; result: number };
   add_waypoint: { values: { mover: string }; result: PoseValues };
   change_object: { values: { obj: number | string; changes?: ObjectChanges }; result: ObjectValues };
   change_scene: { values: { scene: string }; result: null };
