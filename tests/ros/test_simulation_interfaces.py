@@ -176,7 +176,12 @@ def test_robots_come_and_go_with_their_links(call: StandardClient, tmp_path: Pat
     assert call.entities(filter="^one/cart ")[0] == "one/cart base"
     spawn("x", NOT_FOUND, uri="package://../../etc/passwd.urdf")
     spawn("x", NOT_FOUND, uri="file:///nowhere/arm.urdf")
-    spawn("x", code.RESOURCE_PARSE_ERROR, text="<robot name='r2'/>")
+    bomb = '<!DOCTYPE r [<!ENTITY a "b"><!ENTITY c "&a;&a;">]><robot name="r"/>'
+    many = "".join(f'<link name="a{n}"/>' for n in range(10_000))
+    no_number = ARM.replace('value="1.0"', 'value="nan"')
+    loop = ARM.replace('<child link="upper"/>', '<child link="base"/>')
+    for text in ("<robot name='r2'/>", f'<robot name="r">{many}</robot>', bomb, no_number, loop):
+        spawn("x", code.RESOURCE_PARSE_ERROR, text=text)
     mesh = '<visual><geometry><mesh filename="package://../../m.obj"/></geometry></visual>'
     bare = f"<robot name='r'><link name='a'>{mesh}</link></robot>"
     spawn("x", code.MISSING_ASSETS, text=bare)

@@ -62,7 +62,7 @@ class Spawned:
     @property
     def is_robot(self) -> bool:
         """True of a robot."""
-        return "file" in self.entry
+        return "asset" not in self.entry
 
 
 def asset_uri(name: str) -> str:
