@@ -13,6 +13,7 @@ Every sentence says what was wrong and what is accepted, with the names that the
     ├── InternalFault           an error of the simulator itself
     ├── SceneError              one or more errors in a scene file, each with file:line:column
     ├── AssetError              a model, texture or pack that cannot be used
+    │   └── AssetMissing        a file that is not where it is looked for
     ├── PhysicsError            the physics engine refused a call or diverged
     ├── RenderError             a picture could not be rendered
     │   ├── ContextError        no OpenGL context could be created
@@ -91,8 +92,7 @@ class UnknownName(InvalidRequest):
             accepted = f"one of: {shown} (did you mean {near[0]!r}?)"
         if also:
             accepted += f"; or {also}"
-        self.kind = kind
-        self.name = name
+        self.kind, self.name = kind, name
         self.known = tuple(names)
         super().__init__(kind, name, accepted)
 
@@ -181,9 +181,7 @@ class SceneDiagnostic:
 
     def __str__(self) -> str:
         place = f"{self.path}:{self.line}:{self.column}" if self.line else self.path
-        return (
-            f"{place}: {self.field}: {self.message}" if self.field else f"{place}: {self.message}"
-        )
+        return ": ".join((place, *filter(None, [self.field]), self.message))
 
 
 class SceneError(SailenvError):
@@ -198,9 +196,12 @@ class AssetError(SailenvError):
     """A model, texture or pack that cannot be used."""
 
     def __init__(self, asset: str, why: str) -> None:
-        self.asset = asset
-        self.why = why
+        self.asset, self.why = asset, why
         super().__init__(f"asset {asset!r}: {why}")
+
+
+class AssetMissing(AssetError):
+    """A file of a model or robot that is not where it is looked for."""
 
 
 class PhysicsError(SailenvError):
@@ -256,8 +257,7 @@ class DeadlineExceeded(SailenvError, TimeoutError):
     """Something did not happen in time: `waited_for`, in words, within `timeout_s` seconds."""
 
     def __init__(self, waited_for: str, timeout_s: float) -> None:
-        self.waited_for = waited_for
-        self.timeout_s = timeout_s
+        self.waited_for, self.timeout_s = waited_for, timeout_s
         super().__init__(f"timed out after {timeout_s:g} s while waiting for {waited_for}")
 
 

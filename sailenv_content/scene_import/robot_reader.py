@@ -179,6 +179,7 @@ def _joint(mujoco: Any, model: Any, data: Any, body: int, joint: int) -> dict[st
     """Return a joint: its kind, axis and point in the body's axes, limits, and what moves it."""
     name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, joint) or ""
     kind, at, dof = (int(a[joint]) for a in (model.jnt_type, model.jnt_qposadr, model.jnt_dofadr))
+    ball = mujoco.mjtJoint.mjJNT_BALL
     # The torque or force of the weight of all that hangs on it, at most.
     axis, turns = data.xaxis[joint], kind == mujoco.mjtJoint.mjJNT_HINGE
     lever = 1.0
@@ -196,6 +197,7 @@ def _joint(mujoco: Any, model: Any, data: Any, body: int, joint: int) -> dict[st
         "range": model.jnt_range[joint].tolist(),
         "reference": float(model.qpos0[at]),
         "start": float(data.qpos[at] - model.qpos0[at]),
+        "start_quat_wxyz": data.qpos[at : at + 4].tolist() if kind == ball else [],
         "damping": float(model.dof_damping[dof]),
         "friction": float(model.dof_frictionloss[dof]),
         "weight": float(model.body_subtreemass[body]) * 9.81 * lever * share,

@@ -28,12 +28,21 @@ class XmlNode:
     children : list of XmlNode
     file : str
         Whose it is, for errors.
+    line, column : int
+        Where it begins there, from 1.
     """
 
     tag: str
     attributes: dict[str, str]
     file: str
     children: list[XmlNode] = field(default_factory=list)
+    line: int = 1
+    column: int = 1
+
+    @property
+    def place(self) -> str:
+        """Where it is, as ``file:line:column``."""
+        return f"{self.file}:{self.line}:{self.column}"
 
     def all(self, *tags: str) -> Iterator[XmlNode]:
         """Yield the children of some tags."""
@@ -127,7 +136,8 @@ def read_xml(data: bytes, file: str) -> XmlNode:
         count += 1
         if count > MOST_NODES or len(open_) > DEEPEST:
             raise AssetError(file, f"it has more than {MOST_NODES} elements, or {DEEPEST} levels")
-        node = XmlNode(tag, attributes, file)
+        line, column = parser.CurrentLineNumber, parser.CurrentColumnNumber + 1
+        node = XmlNode(tag, attributes, file, line=line, column=column)
         open_[-1].children.append(node)
         open_.append(node)
 

@@ -46,6 +46,7 @@ class WheelsSpec(SceneModel):
     joints: tuple[_JointName, ...] = Field(
         default=(), max_length=32, description="default: those that turn without end"
     )
+    mover: Name | None = optional("a mover to which they take the robot, when told nothing else")
     radius: Annotated[float, Number(above=0.0, most=10.0, unit="m")] | None = optional(
         "default: of the geometry [m]"
     )
@@ -135,7 +136,7 @@ class RobotSpec(Turned):
 
 
 def robots_stand(scene: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Refuse robots that are carried by what is missing or moves, and carried ones on wheels."""
+    """Refuse robots with names of objects, on what is missing or moves, and carried on wheels."""
     objects = scene.get("objects")
     named = {
         entry.get("name"): entry
@@ -144,7 +145,11 @@ def robots_stand(scene: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ..
     }
     robots = scene.get("robots")
     for index, robot in enumerate(robots if isinstance(robots, list | tuple) else ()):
-        if not isinstance(robot, Mapping) or not isinstance(robot.get("parent"), str):
+        if not isinstance(robot, Mapping):
+            continue
+        if isinstance(robot.get("name"), str) and robot["name"] in named:
+            yield ("robots", index, "name"), "is the name of an object, too"
+        if not isinstance(robot.get("parent"), str):
             continue
         place = ("robots", index, "parent")
         carrier = named.get(robot["parent"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +22,27 @@ from sailenv_ros.world.robot_motors import GAIN
 from sailenv_ros.world.robot_placements import RobotPlacement
 from sailenv_ros.world.world import World
 
-__all__ = ["robot_entries", "robot_placement", "with_full_paths"]
+__all__ = ["RobotRecord", "robot_entries", "robot_placement", "robot_record", "with_full_paths"]
 
 Entry = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotRecord:
+    """A robot as it was at an instant, by which an editor undoes a change.
+
+    Attributes
+    ----------
+    name : str
+    entry : mapping
+        What a scene file would say of it, but for its place.
+    pose : Pose
+        From its parent, if it has one.
+    """
+
+    name: str
+    entry: Mapping[str, Any]
+    pose: Pose
 
 
 def with_full_paths(scene: SceneSpec, folder: Path) -> SceneSpec:
@@ -82,6 +101,14 @@ def robot_placement(
 def robot_entries(world: World) -> list[Entry]:
     """Return the entries of all robots as they stand now."""
     return [_entry(robot) for robot in world.robots]
+
+
+def robot_record(robot: Robot) -> RobotRecord:
+    """Take down a robot as it stands now."""
+    entry = {key: value for key, value in _entry(robot).items() if key not in PLACE_KEYS}
+    fixed = robot.placement.mount == "fixed"
+    pose = robot.placement.spec.pose if fixed else robot.first_pose()
+    return RobotRecord(name=robot.name, entry=entry, pose=pose)
 
 
 def _entry(robot: Robot) -> Entry:

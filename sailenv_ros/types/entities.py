@@ -1,4 +1,4 @@
-"""One object of a scene as ROS's `simulation_interfaces` know it: an entity."""
+"""One object or robot of a scene as ROS's `simulation_interfaces` know it: an entity."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ Vector3 = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entity:
-    """One object at one instant; parts of its model go with it.
+    """One object at one instant, parts of its model with it; or a robot, with all its links.
 
     Attributes
     ----------
     id : int
-        Instance id.
+        Instance id; of a robot that of its first link, below 0.
     name : str
         Unique in its scene.
     asset : str
-        Catalogue name of what it is.
+        Catalogue name of what it is; of a robot, its name in its file.
     category : str
         The category's name.
     static : bool

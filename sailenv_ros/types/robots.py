@@ -6,15 +6,17 @@ clients. Knows no file format, no engine and no message.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.labels import Instance
 from sailenv_ros.types.model import Asset
 
 __all__ = [
     "DRIVE_MODES",
+    "LINK_ASSETS",
     "MOUNTS",
     "DriveMode",
     "Mimic",
@@ -25,6 +27,8 @@ __all__ = [
     "RobotLink",
     "RobotModel",
     "RobotState",
+    "first_links",
+    "link_of_asset",
 ]
 
 Mount: TypeAlias = Literal["fixed", "free", "differential", "mecanum", "ackermann"]
@@ -36,6 +40,10 @@ DriveMode: TypeAlias = Literal["position", "velocity", "effort", "off"]
 
 DRIVE_MODES: tuple[DriveMode, ...] = ("position", "velocity", "effort", "off")
 """Quantities that a joint's motor follows; ``off`` leaves it to its friction."""
+
+
+LINK_ASSETS = "robot:"
+"""Begin of the names of links' assets: ``robot:FILE:DIGEST#LINK``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -214,3 +222,18 @@ class RobotState:
     angular_rad_s: tuple[float, float, float]
     command: tuple[float, float, float]
     sim_time_ns: int
+
+
+def link_of_asset(asset: str) -> str:
+    """Return which link of its robot an asset is; empty for what is none."""
+    return asset.partition("#")[2] if asset.startswith(LINK_ASSETS) else ""
+
+
+def first_links(instances: Iterable[Instance]) -> dict[str, int]:
+    """Return the instance ids of the first links of a scene's robots, by the robots' names."""
+    links = {one.id: one for one in instances if link_of_asset(one.asset)}
+    return {
+        one.name.removesuffix(f" {link_of_asset(one.asset)}"): one.id
+        for one in links.values()
+        if one.parent not in links
+    }

@@ -34,6 +34,7 @@ from sailenv_ros.viewer.picking import pixel_of, standing_point, values_at
 from sailenv_ros.viewer.random_scenes import things_of_any_scene
 from sailenv_ros.viewer.recorded_commands import edits_object, edits_surroundings
 from sailenv_ros.viewer.request_arguments import Arguments
+from sailenv_ros.viewer.robot_commands import ROBOT_COMMANDS
 from sailenv_ros.viewer.room_commands import ROOM_COMMANDS
 from sailenv_ros.viewer.scene_json import object_to_json, pose_to_json
 from sailenv_ros.viewer.scene_messages import PoseValues, Vector3
@@ -42,7 +43,7 @@ from sailenv_ros.viewer.served_commands import served
 
 __all__ = ["COMMANDS"]
 
-_commands = CommandTable({**OPERATION_COMMANDS, **ROOM_COMMANDS})
+_commands = CommandTable({**OPERATION_COMMANDS, **ROOM_COMMANDS, **ROBOT_COMMANDS})
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(_commands)
 """Every command by its name."""

@@ -16,12 +16,13 @@ from sailenv_ros.simulation.editing.room_edits import RoomRecord
 from sailenv_ros.simulation.operations import Operation
 from sailenv_ros.simulation.operations.edits import EditOperations
 from sailenv_ros.simulation.operations.rooms import RoomOperations
+from sailenv_ros.simulation.robot_entries import RobotRecord
 from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["Conversation", "EditHistory", "EditStep", "Record"]
 
-Record: TypeAlias = ObjectRecord | SurroundingsRecord | RoomRecord | None
-"""State of the edited part before or after a change; None for an object that was not there."""
+Record: TypeAlias = ObjectRecord | RobotRecord | SurroundingsRecord | RoomRecord | None
+"""State of the edited part before or after a change; None for what was not there."""
 
 MOST_STEPS = 200
 
@@ -56,8 +57,8 @@ class EditStep:
         What was changed of which thing: changes of the same are merged.
     epoch : int
         Of the scene.
-    before, after : ObjectRecord, SurroundingsRecord, RoomRecord or None
-        None where the object was not there.
+    before, after : ObjectRecord, RobotRecord, SurroundingsRecord, RoomRecord or None
+        None where the object or robot was not there.
     time_s : float
         Of the loop's clock [s].
     """
@@ -149,6 +150,10 @@ async def _restored(context: Conversation, now: Record, then: Record) -> int:
     if isinstance(now, RoomRecord) and isinstance(then, RoomRecord):
         await context.run(RoomOperations.restore_room, now, then)
         return 0
+    if isinstance(now, RobotRecord) or isinstance(then, RobotRecord):
+        assert now is None or isinstance(now, RobotRecord)
+        assert then is None or isinstance(then, RobotRecord)
+        return await context.run(EditOperations.restore_robot, now, then)
     assert not isinstance(now, SurroundingsRecord | RoomRecord)
     assert not isinstance(then, SurroundingsRecord | RoomRecord)
     return await context.run(EditOperations.restore_object, now, then)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient
 
-__all__ = ["configure"]
+__all__ = ["ROBOT_SUBSTEPS", "configure", "subdivide_steps"]
 
 SOLVER_RESIDUAL = 1e-5
 """Sum of the squared changes of velocities at which the engine's solver ends [m²/s²]; with ten
@@ -13,6 +13,11 @@ times as much, cutlery on a plate never comes to rest."""
 WARM_STARTING = 0.85
 """Share of a contact's last impulse that the solver begins with, Bullet's own default; with
 PyBullet's 0.1 a book that lies on a bed trembles forever."""
+
+ROBOT_SUBSTEPS = 2
+"""Parts into which the engine divides each step of a world that has robots. It takes the speed of
+a step's end for all of it, an error of half a step in time: by steps of 1/240 s the hand of a Kuka
+that swings was off by 1.4 % of its path, by halves of them 0.8 %."""
 
 
 def configure(client: BulletClient) -> None:
@@ -26,3 +31,8 @@ def configure(client: BulletClient) -> None:
         solverResidualThreshold=SOLVER_RESIDUAL,
         warmStartingFactor=WARM_STARTING,
     )
+
+
+def subdivide_steps(client: BulletClient, *, robots: bool) -> None:
+    """Let the engine divide each step, if the world has robots; forces last for all its parts."""
+    client.setPhysicsEngineParameter(numSubSteps=ROBOT_SUBSTEPS if robots else 0)

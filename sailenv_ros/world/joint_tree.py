@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from sailenv_ros.errors import PhysicsError
 from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose, invert
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
+from sailenv_ros.world.engine_settings import ROBOT_SUBSTEPS
 from sailenv_ros.world.joint_links import STANDING, JointDrive, JointLink, at_origin
 from sailenv_ros.world.kinematics import composed
 from sailenv_ros.world.tree_building import build_tree, set_dynamics
@@ -164,7 +165,7 @@ class JointTree:
                 kinds.POSITION_CONTROL,
                 targetPosition=drive.target,
                 targetVelocity=0.0,
-                positionGain=min(drive.gain / STEPS_PER_SECOND, 1.0),
+                positionGain=min(drive.gain / (STEPS_PER_SECOND * ROBOT_SUBSTEPS), 1.0),
                 velocityGain=1.0,
                 force=drive.effort,
                 maxVelocity=drive.speed,

@@ -285,8 +285,11 @@ class JointedBody(Body):
     def behave(
         self, running: RunningBehaviour, time_s: float, frustum_planes: FrustumPlanes
     ) -> None:
-        """Do what a behaviour asks; velocities count along the joint."""
+        """Do what a behaviour asks; velocities count along the joint, if it has one that moves."""
         assert self.tree is not None
+        if self.is_free:
+            super().behave(running, time_s, frustum_planes)
+            return
         action = running.act(time_s, self._state(running, frustum_planes))
         if action.acts:
             self.tree.wake()

@@ -6,13 +6,12 @@ Its links are objects on joints; a `JointTree` moves them.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.scene.spec_robots import SensorSpec
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.robots import DriveMode, RobotJointState, RobotState
 from sailenv_ros.types.validation import checked_number
@@ -25,7 +24,6 @@ from sailenv_ros.world.robot_collision import let_pass
 from sailenv_ros.world.robot_kinematics import (
     all_positions,
     base_from_frame,
-    carrier,
     reaching,
 )
 from sailenv_ros.world.robot_motors import bounds, first_drive
@@ -77,9 +75,9 @@ class Robot:
         self.wheels: Wheels | None = None
         if placement.mount not in ("fixed", "free"):
             self.wheels = Wheels(placement.mount, self.model, placement.spec.wheels)
-        self.sensors = RobotSensors(self.name, _sensors(placement))
+        self.sensors = RobotSensors(placement)
         self._command: Planar = STANDS
-        self._until_s = math.inf
+        self._until_s = -math.inf
         rolled = () if self.wheels is None else self.wheels.joints
         self._drives = {
             name: first_drive(placement.spec, self._files[name], body.joint_state()[0])
@@ -163,7 +161,7 @@ class Robot:
             tree.set(body.place, start)
             if name in self._drives:
                 self._drives[name] = first_drive(spec, self._files[name], start)
-        self._command = STANDS
+        self._command, self._until_s = STANDS, -math.inf
         self._apply(self._drives)
         tree.wake()
 
@@ -182,14 +180,15 @@ class Robot:
         if any(self._command):
             self.tree.wake()
 
-    def before_step(self, now_s: float) -> None:
-        """Do what its wheels and motors have to before a step."""
+    def before_step(self, now_s: float, leader: Callable[[str], Pose]) -> None:
+        """Do what its wheels and motors have to before a step; `leader` tells where a mover is."""
         if self._prepared is not self.tree:
             self.prepare()
         self.sensors.before_step(self.bodies)
         if self.wheels is not None:
             if now_s >= self._until_s - 1e-9:
-                self._command = STANDS
+                mover = self.placement.spec.wheels.mover
+                self._command = self._led(self.wheels, leader(mover)) if mover else STANDS
             self._roll(self.wheels)
 
     def prepare(self) -> None:
@@ -305,6 +304,14 @@ class Robot:
         for name, drive in drives.items():
             self.tree.follow(self._joints[name].place, drive)
 
+    def _led(self, wheels: Wheels, world_from_leader: Pose) -> Planar:
+        """Return what takes it to its mover."""
+        here = self._first.world_from_body()
+        wanted = wheels.towards(np.linalg.inv(here) @ world_from_leader.matrix())
+        if any(wanted):
+            self.tree.wake()
+        return wanted
+
     def _roll(self, wheels: Wheels) -> None:
         """Drive the first link as far as traction allows, and turn the wheels as it moves."""
         matrix = self._first.world_from_body()
@@ -327,19 +334,3 @@ class Robot:
             for name, angle in wheels.angles(moving).items():
                 drive = JointDrive(mode="position", target=angle, **STEERING)
                 self.tree.follow(self._joints[name].place, drive)
-
-
-def _sensors(placement: RobotPlacement) -> dict[str, tuple[SensorSpec, str, Pose]]:
-    """Return the sensors of a robot, each with the link that carries it and its pose there.
-
-    Raises
-    ------
-    UnknownName
-        If a link is not there.
-    """
-    model = placement.model
-    found = {}
-    for spec in placement.spec.sensors:
-        link, offset = carrier(model, spec.link or model.links[0].name)
-        found[spec.name] = spec, link, Pose.from_matrix(offset @ spec.pose.matrix())
-    return found

@@ -16,6 +16,8 @@ from sailenv_ros.types.robot_sensors import InertialMeasurement, LaserScan
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.kinematics import composed, cross
+from sailenv_ros.world.robot_kinematics import carrier
+from sailenv_ros.world.robot_placements import RobotPlacement
 
 __all__ = ["CastRays", "RobotSensors"]
 
@@ -33,15 +35,22 @@ class RobotSensors:
 
     Parameters
     ----------
-    name : str
-        Of the robot, for errors.
-    sensors : mapping of str to (SensorSpec, str, Pose)
-        By name: what each is, the link that carries it, and its pose there.
+    placement : RobotPlacement
+
+    Raises
+    ------
+    UnknownName
+        If the link of one is not there.
     """
 
-    def __init__(self, name: str, sensors: Mapping[str, tuple[SensorSpec, str, Pose]]) -> None:
-        self._name = name
-        self._sensors = dict(sensors)
+    def __init__(self, placement: RobotPlacement) -> None:
+        self._name = placement.spec.name
+        self._sensors: dict[str, tuple[SensorSpec, str, Pose]] = {}
+        model = placement.model
+        for spec in placement.spec.sensors:
+            link, offset = carrier(model, spec.link or model.links[0].name)
+            pose = Pose.from_matrix(offset @ spec.pose.matrix())
+            self._sensors[spec.name] = spec, link, pose
         self._before: dict[str, Doubles] = {}
 
     def named(self, kind: str, name: str) -> SensorSpec:

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from sailenv_ros.errors import NameTaken, UnknownName
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.robots import RobotState
 from sailenv_ros.world.body_table import BodyTable
-from sailenv_ros.world.bullet import BulletClient
+from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient, sim_time_ns
+from sailenv_ros.world.engine_settings import subdivide_steps
 from sailenv_ros.world.jointed_bodies import JointedBody
+from sailenv_ros.world.mover_table import MoverTable
 from sailenv_ros.world.robot import Robot
 from sailenv_ros.world.robot_placements import RobotPlacement, link_name, link_placements
 
@@ -25,11 +28,18 @@ class RobotTable:
     bodies : BodyTable
         With the links of `robots` in it.
     robots : sequence of RobotPlacement
+    movers : MoverTable
+        Those that may lead robots.
     """
 
     def __init__(
-        self, client: BulletClient, bodies: BodyTable, robots: Sequence[RobotPlacement]
+        self,
+        client: BulletClient,
+        bodies: BodyTable,
+        robots: Sequence[RobotPlacement],
+        movers: MoverTable,
     ) -> None:
+        self._movers = movers
         self._client = client
         self._bodies = bodies
         self._robots: dict[str, Robot] = {}
@@ -56,6 +66,11 @@ class RobotTable:
             raise UnknownName("robot", name, self._robots)
         return self._robots[name]
 
+    @property
+    def added(self) -> tuple[str, ...]:
+        """Names of the robots that came since the start."""
+        return tuple(name for name in self._robots if name not in self._firsts)
+
     def add(self, placement: RobotPlacement, categories: CategoryTable) -> Robot:
         """Put one more robot into the world, all of its links or none.
 
@@ -65,13 +80,14 @@ class RobotTable:
             If its name, or that of a link, is taken, or its description does not fit.
         """
         name = placement.spec.name
-        if name in self._robots:
+        if name in self._robots or self._bodies.id_of_name(name):
             raise NameTaken("robot", name)
         added = self._bodies.add_all(tuple(link_placements(placement, categories)))
         try:
             return self._begin(placement)
         except BaseException:
             self._robots.pop(name, None)
+            subdivide_steps(self._client, robots=bool(self))
             self._bodies.remove_all(added)
             raise
 
@@ -82,6 +98,7 @@ class RobotTable:
         numbers = [number for number, body in self._bodies.items() if id(body) in own]
         self._bodies.remove_all(numbers)
         del self._robots[robot.name]
+        subdivide_steps(self._client, robots=bool(self))
         self._firsts -= {robot.name}
 
     def state(self, robot: Robot, sim_time_ns: int) -> RobotState:
@@ -89,10 +106,14 @@ class RobotTable:
         ids = {body.placement.name: number for number, body in self._bodies.items()}
         return robot.state(ids, sim_time_ns)
 
-    def before_step(self, now_s: float) -> None:
-        """Do what wheels and motors have to before a step."""
+    def before_step(self, step: int) -> None:
+        """Do what wheels and motors have to before a step, which so many came before."""
+
+        def leader(mover: str) -> Pose:
+            return self._movers[mover].pose_at(sim_time_ns(step))
+
         for robot in self._robots.values():
-            robot.before_step(now_s)
+            robot.before_step(step / STEPS_PER_SECOND, leader)
 
     def put_back(self) -> list[int]:
         """Put robots of the start, which are still there, where they began; return their ids."""
@@ -110,8 +131,10 @@ class RobotTable:
             robot.take_bodies(self._bodies_of(robot.placement))
 
     def _begin(self, placement: RobotPlacement) -> Robot:
+        self._movers[placement.spec.wheels.mover or ""]  # which says if there is none
         robot = Robot(self._client, placement, self._bodies_of(placement))
         self._robots[robot.name] = robot
+        subdivide_steps(self._client, robots=True)
         robot.prepare()
         return robot
 

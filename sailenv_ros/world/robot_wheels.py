@@ -22,6 +22,12 @@ Doubles = NDArray[np.float64]
 Planar = tuple[float, float, float]
 """Forward and left [m/s], turning left [rad/s]."""
 
+PULL_PER_S, TURN_PER_S = 2.0, 3.0
+"""Speed for each unit of the way, and of the turn, that are left to a mover [1/s]."""
+
+NEAR_M, AT_GOAL, AHEAD_RAD = 0.05, 0.05, 0.7
+"""Nearer, a mover is reached; slower turns [rad/s] are none; and where it counts as ahead."""
+
 LEVEL = 0.2
 """Greatest vertical part of a wheel's axis."""
 
@@ -124,6 +130,26 @@ class Wheels:
             most = abs(forward) * math.tan(self._spec.steering) / self.wheelbase_m
             turn = min(max(turn, -most), most)
         return forward, left, turn
+
+    def towards(self, here_from_goal: Doubles) -> Planar:
+        """Return what takes the robot to a (4, 4) pose in its first link's frame.
+
+        Mecanum wheels take it there straight; others turn first where the goal is not ahead.
+        """
+        x, y = float(here_from_goal[0, 3]), float(here_from_goal[1, 3])
+        way = math.hypot(x, y)
+        if self._mount == "mecanum":
+            turn = TURN_PER_S * math.atan2(here_from_goal[1, 0], here_from_goal[0, 0])
+            near = way < NEAR_M
+            pull = 0.0 if near else PULL_PER_S
+            return self.possible((pull * x, pull * y, turn if abs(turn) > AT_GOAL else 0.0))
+        if way < NEAR_M:
+            return 0.0, 0.0, 0.0
+        bearing = math.atan2(y, x)
+        if self._mount == "differential" and abs(bearing) > AHEAD_RAD:
+            return self.possible((0.0, 0.0, TURN_PER_S * bearing))
+        forward = min(PULL_PER_S * way, self._spec.speed)
+        return self.possible((forward, 0.0, 2.0 * forward * math.sin(bearing) / way))
 
     def step(self, now: Planar, wanted: Planar, seconds: float) -> Planar:
         """Return the velocity after a time: as near to what is wanted as traction allows."""

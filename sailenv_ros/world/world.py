@@ -82,6 +82,7 @@ class World(WorldRobots):
         NameTaken
             If an object of that name is there.
         """
+        self._require_no_robot(placement.name)
         instance_id = self._bodies.add(placement)
         self._changed_step = self._step
         self._changed()
@@ -127,6 +128,7 @@ class World(WorldRobots):
         old = self.body(instance_id)
         if placement.name != old.placement.name:
             self._require_no_link(instance_id, "to be renamed")
+            self._require_no_robot(placement.name)
         self._bodies.rebuild(instance_id, placement)
         self.robots.renew()
         if placement.scale != old.placement.scale:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.errors import InvalidRequest, NameTaken
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.robot_sensors import InertialMeasurement, LaserScan
 from sailenv_ros.types.robots import RobotState
@@ -87,3 +87,8 @@ class WorldRobots(WorldState):
         if placement.robot:
             accepted = f"one that is no link of a robot; {placement.robot!r} goes as a whole"
             raise InvalidRequest(f"object {what}", placement.name, accepted)
+
+    def _require_no_robot(self, name: str) -> None:
+        """Refuse an object the name of a robot."""
+        if any(robot.name == name for robot in self.robots):
+            raise NameTaken("object", name)

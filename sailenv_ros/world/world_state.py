@@ -107,7 +107,7 @@ class WorldState:
             self._client.gravity = gravity
             self._bodies = BodyTable(self._client, placements, waiting)
             self._bodies.others = lambda: self._stands.bodies
-            self.robots = RobotTable(self._client, self._bodies, robots)
+            self.robots = RobotTable(self._client, self._bodies, robots, self._stands)
             begin_at_rest(self._client, self.bodies, settled=settled)
             self._stands.enter()
             self._crowd = Crowd(lambda: self._bodies, lambda: self._stands.places(self.sim_time_ns))
@@ -147,7 +147,7 @@ class WorldState:
                 self._motion_log.before_step(self._step, self._bodies.items())
             actions.act(self._step / STEPS_PER_SECOND)
             self._stands.before_step(self.sim_time_ns)
-            self.robots.before_step(self._step / STEPS_PER_SECOND)
+            self.robots.before_step(self._step)
             self._bodies.joints.before_step()
             self._client.stepSimulation()
             self._stands.after_step(self.sim_time_ns)

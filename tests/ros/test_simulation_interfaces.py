@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -27,9 +28,10 @@ from simulation_interfaces.msg import (
 
 from sailenv_msgs_py.transforms import pose_from_msg
 from sailenv_ros.ros.nodes.simulation_interfaces.table import ROWS
+from tests.support.robot_files import ARM, CART
 from tests.support.ros_probe import RELIABLE, Probe
 from tests.support.sim_node_process import NodeProcess
-from tests.support.standard_client import StandardClient, set_resource, world
+from tests.support.standard_client import StandardClient, set_resource, spawn_request, world
 from tests.support.standard_storm import storm
 from tests.support.waiting import until
 
@@ -71,7 +73,7 @@ def test_everything_is_offered_and_announced(call: StandardClient) -> None:
     assert set(features.features) == {
         number for name, number in constants.items() if name not in missing
     }
-    assert "sailenv" in features.spawn_formats
+    assert list(features.spawn_formats) == ["sailenv", "urdf", "mjcf"]
     call("ResetSimulation", UNSUPPORTED, scope=srv.ResetSimulation.Request.SCOPE_TIME)
     call("LoadWorld", UNSUPPORTED, **world(text="version: 1"))
 
@@ -113,10 +115,78 @@ def test_an_object_of_a_scene_file_is_spawned_by_its_text(call: StandardClient) 
     info = call("GetEntityInfo", entity="heavy").info
     assert info.category.category == EntityCategory.CATEGORY_STATIC_OBJECT
     assert spawn("{asset: [", "x").result.result == code.RESOURCE_PARSE_ERROR
-    assert spawn("<robot name='r2'/>", "x").result.result == code.UNSUPPORTED_FORMAT
+    assert spawn("{scale: 2}", "x").result.result == code.UNSUPPORTED_FORMAT
     assert spawn("{asset: cube, masss: 7}", "x").result.result == code.RESOURCE_PARSE_ERROR
     hostile = "{asset: cube, behaviours: [{type: 'os:system'}]}"
     assert spawn(hostile, "x").result.result == code.RESOURCE_PARSE_ERROR
+
+
+def test_robots_come_and_go_with_their_links(call: StandardClient, tmp_path: Path) -> None:
+    """One entity each, and one for each link; by a text, a file, or as scene files have them."""
+    code = srv.SpawnEntity.Response
+
+    def spawn(name: str = "", code: int | None = OK, **resource: str) -> str:
+        request = srv.SpawnEntity.Request(name=name)
+        request.initial_pose.pose.position.z = 40.0
+        set_resource(request, **resource)
+        return str(call.send("SpawnEntity", request, code).entity_name)
+
+    def robots() -> list[str]:
+        wanted = EntityCategory(category=EntityCategory.CATEGORY_ROBOT)
+        return call.entities(categories=[wanted])
+
+    assert spawn(text=ARM) == "arm"
+    links = ["arm base", "arm upper", "arm lower", "arm left", "arm right"]
+    assert call.entities(filter="^arm") == ["arm", *links]
+    assert robots() == ["arm"]
+    assert call("GetEntityInfo", entity="arm").info.tags == ["robot", "arm", "spawned"]
+    assert call.state("arm").pose == call.state("arm base").pose
+    high, low = call("GetEntityBounds", entity="arm").bounds.points
+    assert (high.z, low.z) == pytest.approx((1.12, 0.0), abs=1e-6)
+    assert (high.x, low.x) == pytest.approx((0.15, -0.15))
+    ball = Bounds(type=Bounds.TYPE_SPHERE, points=[Vector3(z=41.0), Vector3(x=0.01)])
+    assert call.entities(bounds=ball) == ["arm", "arm lower"]
+    call("DeleteEntity", FAILED, entity="arm upper")
+    call.set_state("arm", call.state("arm"), FAILED)  # it is fixed
+    spawn("arm", code.NAME_NOT_UNIQUE, text=ARM)
+    spawn("arm upper", code.NAME_NOT_UNIQUE, uri="cube")
+    call("DeleteEntity", entity="arm")
+    call("DeleteEntity", NOT_FOUND, entity="arm")
+    assert call.entities(filter="^arm") == []
+    path = tmp_path / "cart.urdf"
+    path.write_text(CART, encoding="utf-8")
+    assert spawn(uri=f"file://{path}") == "cart"
+    rolling = f"{{file: '{path}', mount: differential}}"
+    assert spawn("second", text=rolling) == "second"
+    moved = call.state("second")
+    moved.pose.position.x, moved.twist.linear.x = 5.0, 0.5
+    call.set_state("second", moved)
+    assert call.state("second chassis").pose.position.x == 5.0
+    assert call.state("second").twist.linear.x == pytest.approx(0.5)
+    for _ in range(2):
+        call("ResetSimulation", scope=srv.ResetSimulation.Request.SCOPE_SPAWNED)
+        assert robots() == []
+        assert spawn("cart", uri=str(path)) == "cart"
+    call("ResetSimulation")
+    assert spawn("cart", uri=str(path)) == "cart"
+    arm = spawn_request("cart", "", entity_namespace="one", at=(0.0, 3.0, 40.0))
+    set_resource(arm, text=ARM)
+    assert call.send("SpawnEntity", arm).entity_name == "one/cart"
+    assert robots() == ["cart", "one/cart"]
+    assert call.entities(filter="^one/cart ")[0] == "one/cart base"
+    spawn("x", NOT_FOUND, uri="package://../../etc/passwd.urdf")
+    spawn("x", NOT_FOUND, uri="file:///nowhere/arm.urdf")
+    bomb = '<!DOCTYPE r [<!ENTITY a "b"><!ENTITY c "&a;&a;">]><robot name="r"/>'
+    many = "".join(f'<link name="a{n}"/>' for n in range(10_000))
+    no_number = ARM.replace('value="1.0"', 'value="nan"')
+    loop = ARM.replace('<child link="upper"/>', '<child link="base"/>')
+    for text in ("<robot name='r2'/>", f'<robot name="r">{many}</robot>', bomb, no_number, loop):
+        spawn("x", code.RESOURCE_PARSE_ERROR, text=text)
+    mesh = '<visual><geometry><mesh filename="package://../../m.obj"/></geometry></visual>'
+    bare = f"<robot name='r'><link name='a'>{mesh}</link></robot>"
+    spawn("x", code.MISSING_ASSETS, text=bare)
+    spawn("x", code.RESOURCE_PARSE_ERROR, text=f"{{file: '{path}', mount: flying}}")
+    assert robots() == ["cart", "one/cart"]
 
 
 def test_several_are_spawned_in_one_call(call: StandardClient) -> None:

@@ -22,7 +22,14 @@ from simulation_interfaces.msg import (
     TagsFilter,
 )
 
-from tests.support.standard_client import OK, StandardClient, spawn_request, world
+from tests.support.robot_files import ARM
+from tests.support.standard_client import (
+    OK,
+    StandardClient,
+    set_resource,
+    spawn_request,
+    world,
+)
 
 __all__ = ["storm"]
 
@@ -35,7 +42,8 @@ STEP_NS = 1e9 / 240
 WORLDS = ("optical", "solid_benchmark", "void")
 NAMES = ("a", "b", "c", "a_1")
 SPACES = ("", "", "r1", "r1/deep")
-MOST_SPAWNED = 6
+MOST_SPAWNED, MOST_ROBOTS = 6, 2
+LINKS = ("base", "upper", "lower", "left", "right")
 
 
 @dataclass
@@ -48,22 +56,30 @@ class Model:
     steps: int = 0
     gone: set[str] = field(default_factory=set)
     spawned: list[str] = field(default_factory=list)
+    robots: list[str] = field(default_factory=list)
     tagged: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @property
+    def links(self) -> set[str]:
+        return {f"{robot} {link}" for robot in self.robots for link in LINKS}
 
     @property
     def entities(self) -> set[str]:
         if self.state == NO_WORLD:
             return set()
-        return (set(self.own[self.scene]) - self.gone) | set(self.spawned)
+        there = set(self.own[self.scene]) - self.gone
+        return there | set(self.spawned) | set(self.robots) | self.links
 
     def begin(self, scene: str, state: int) -> None:
         self.scene, self.state, self.steps = scene, state, 0
-        self.gone, self.spawned, self.tagged = set(), [], {}
+        self.gone, self.spawned, self.robots, self.tagged = set(), [], [], {}
 
     def remove(self, name: str) -> None:
         self.spawned = [one for one in self.spawned if one != name]
         self.gone |= {name} & self.own[self.scene]
-        self.tagged.pop(name, None)
+        for one in (name, *(f"{name} {link}" for link in LINKS if name in self.robots)):
+            self.tagged.pop(one, None)
+        self.robots = [one for one in self.robots if one != name]
 
 
 def storm(call: StandardClient, *, seed: int, calls: int) -> tuple[str, dict[str, int]]:
@@ -142,6 +158,28 @@ class _Storm:
             assert answer.entity_name == full
             self._model.spawned.append(full)
 
+    def _do_spawn_robot(self) -> None:
+        if len(self._model.robots) >= MOST_ROBOTS:
+            self._do_delete_entity()
+            return
+        name, space = self._random.choice((*NAMES, "")), self._random.choice(SPACES)
+        rename = self._random.random() < 0.5
+        request = spawn_request(
+            name, "", entity_namespace=space, allow_renaming=rename, at=self._place()
+        )
+        set_resource(request, text=ARM)
+        # A name that is not given is that of the file.
+        code, full = self._naming(name or "arm", space, rename)
+        answer = self._of_world("SpawnEntity", code, request)
+        if answer is not None and code == OK:
+            assert answer.entity_name == full
+            self._model.robots.append(full)
+
+    def _do_set_state_of_robot(self) -> None:
+        if self._model.robots and self._model.state != NO_WORLD:
+            name = self._random.choice(self._model.robots)
+            self._call.set_state(name, self._call.state(name), FAILED)  # it is fixed
+
     def _naming(self, name: str, space: str, rename: bool) -> tuple[int, str]:
         code, prefix = srv.SpawnEntity.Response, f"{space}/" if space else ""
         if "/" in name or (not name and not rename):
@@ -173,7 +211,7 @@ class _Storm:
 
     def _do_delete_entity(self) -> None:
         name = self._name()
-        code = self._found(name)
+        code = FAILED if name in self._model.links else self._found(name)
         if self._of_world("DeleteEntity", code, entity=name) is not None and code == OK:
             self._model.remove(name)
 
@@ -220,6 +258,7 @@ class _Storm:
         place = state.pose.position
         place.x, place.y, place.z = self._place()
         state.twist.linear.x = self._random.uniform(-2.0, 2.0)
+        state.acceleration.linear.x = 0.0  # that would be asked for, too
         self._call.set_state(name, state)
         told = self._send("GetEntityState", OK, entity=name).state
         assert abs(told.pose.position.x - place.x) < 1e-9
@@ -264,7 +303,7 @@ class _Storm:
         if scope in (0, 255):
             self._model.begin(self._model.scene, self._model.state)
         elif scope & 4:
-            for name in tuple(self._model.spawned):
+            for name in (*self._model.spawned, *self._model.robots):
                 self._model.remove(name)
 
     def _do_set_simulation_state(self) -> None:

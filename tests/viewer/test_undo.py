@@ -67,6 +67,40 @@ async def test_every_change_of_an_object_is_undone_and_done_again(
 
 
 @in_a_loop
+async def test_robots_are_undone_as_a_whole(server: ViewerServer, still: Simulation) -> None:
+    """Adding one, and deleting it by one of its links; it comes back with its joints as they were.
+
+    A page names files of Python packages alone.
+    """
+    async with page_of(server) as page:
+        states = [by_name(still)]
+        made = await page.ask("add_robot", file="pybullet_data:r2d2.urdf", u=80, v=90, mount="free")
+        assert made == still.get_robot("r2d2").links["base_link"]
+        states.append(by_name(still))
+        assert len(states[1]) == len(states[0]) + 16
+        still.put_joints({"head_swivel": 0.5})
+        bent = by_name(still)
+        head = still.get_robot("r2d2").links["head"]
+        await page.ask("despawn_object", obj=head)
+        assert by_name(still) == states[0]
+        assert (await page.ask("undo"))["what"] == "deleting r2d2"
+        back = by_name(still)
+        assert back.keys() == bent.keys()
+        for name, (*_, pose, _, _, _) in bent.items():
+            np.testing.assert_allclose(back[name][2].matrix(), pose.matrix(), atol=1e-9)
+        assert still.get_robot("r2d2").mount == "free"
+        await page.ask("redo")
+        assert by_name(still) == states[0]
+        await page.ask("undo")
+        await page.ask("undo")
+        assert by_name(still) == states[0]
+        await page.ask("redo")
+        assert "r2d2" in still.scene_text()
+        await page.ask("undo")
+        assert "PACKAGE:path" in await page.refusal("add_robot", file="/etc/passwd", u=8, v=9)
+
+
+@in_a_loop
 async def test_lights_and_surroundings_are_undone(server: ViewerServer, still: Simulation) -> None:
     """Those that were changed, and no other; quick changes of one slider are one step."""
     async with page_of(server) as page:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 from sailenv_ros.assets.archives import MAX_ARCHIVE_BYTES
-from sailenv_ros.errors import AssetError
+from sailenv_ros.errors import AssetError, AssetMissing
 
-__all__ = ["mesh_path"]
+__all__ = ["PACKAGE", "mesh_path", "package_path"]
 
 HIGHEST = 6
 """Folders above a description among which its package is looked for."""
@@ -42,7 +43,23 @@ def mesh_path(named: str, description: Path) -> Path:
                 raise AssetError(path.name, f"it is larger than {MAX_ARCHIVE_BYTES // 2**20} MB")
             return path
     accepted = "a file beside the description or in the package that it names is accepted"
-    raise AssetError(description.name, f"{shown} is not there; {accepted}")
+    raise AssetMissing(description.name, f"{shown} is not there; {accepted}")
+
+
+def package_path(named: str) -> Path:
+    """Return the file ``package://NAME/path`` of a package of ROS.
+
+    Raises
+    ------
+    AssetMissing
+        If it is in none that is installed.
+    """
+    package, _, inside = named.removeprefix(PACKAGE).partition("/")
+    for home, name in _shares(package, inside) if re.fullmatch(r"[\w-]+", package) else ():
+        path = (home / name).resolve() if "\0" not in name else home
+        if path.is_relative_to(home) and path.is_file():
+            return path
+    raise AssetMissing(named[:200], f"no package {package[:80]!r} of ROS that is installed has it")
 
 
 def _homes(named: str, folder: Path) -> list[tuple[Path, str]]:
@@ -59,6 +76,9 @@ def _homes(named: str, folder: Path) -> list[tuple[Path, str]]:
             found.append((above, inside))
         if (above / package).is_dir():
             found.append((above / package, inside))
-    shares = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    found += [(Path(share).resolve() / "share" / package, inside) for share in shares if share]
-    return found
+    return [*found, *_shares(package, inside)]
+
+
+def _shares(package: str, inside: str) -> list[tuple[Path, str]]:
+    prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    return [(Path(one).resolve() / "share" / package, inside) for one in prefixes if one]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.robots.raw_links import RawGeometry, RawJoint, RawLink
 from sailenv_ros.assets.robots.read_apart import checked_tree, read_apart
+from sailenv_ros.assets.safe_xml import XmlNode
 from sailenv_ros.errors import AssetError
 from sailenv_ros.extras import need
 from sailenv_ros.types.colour import linear_from_srgb
@@ -26,6 +27,9 @@ Doubles = NDArray[np.float64]
 # MuJoCo's numbers, which its files fix.
 _FREE, _BALL, _SLIDE, _HINGE = 0, 1, 2, 3
 _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH = 2, 3, 4, 5, 6, 7
+
+MIDDLE_RAD = 1.5
+"""Farthest that the middle hinge of a ball joint turns: at a right angle the others are one."""
 
 LIGHTEST_KG = 1e-3
 """Mass of what is between two joints of one body."""
@@ -55,44 +59,80 @@ class MjcfContent:
 def read_mjcf(path: Path) -> MjcfContent:
     """Return the links and joints of a MJCF file; what belongs to its world is left out.
 
+    Several bodies on the world are one robot, whose first link is the world. A ball joint is three
+    hinges about x, y and z, of which the middle one does not reach a right angle.
+
     Raises
     ------
     AssetError
-        If it is malformed, holds more than one robot or joints of other kinds.
+        If it is malformed, or holds several robots of which one moves freely.
     MissingPackage
         If MuJoCo is not installed.
     """
     need("mujoco", "reading MJCF")
-    checked_tree(path)
+    tree = checked_tree(path)
     read, arrays = read_apart(path)
     bodies: Sequence[Mapping[str, Any]] = read["bodies"]
     roots = [number for number, body in enumerate(bodies) if number and body["parent"] == 0]
-    if len(roots) != 1:
-        why = f"its world holds {len(roots)} bodies, and a robot is one with all that it carries"
-        raise AssetError(path.name, why)
+    if not roots:
+        raise AssetError(path.name, "its world holds no body, and a robot is one at least")
+    frees = [number for number in roots if _is_free(bodies[number])]
+    if frees and len(roots) > 1:
+        place = _place(tree, bodies[frees[0]]["name"])
+        why = f"its world holds {len(roots)} bodies, of which this one moves freely"
+        raise AssetError(place, f"{why}; a robot is one with all that it carries")
     followers = {one["joint"]: one for one in read["followers"] if one["joint"]}
     geoms: dict[int, list[Mapping[str, Any]]] = {}
     for geom in read["geoms"]:
         geoms.setdefault(geom["body"], []).append(geom)
-    free = any(joint["type"] == _FREE for joint in bodies[roots[0]]["joints"])
-    content = MjcfContent(mount="free" if free else "fixed")
+    content = MjcfContent(mount="free" if frees else "fixed")
     names = {number: body["name"] or f"body {number}" for number, body in enumerate(bodies)}
-    if not free and bodies[roots[0]]["joints"]:
+    if not frees and (len(roots) > 1 or bodies[roots[0]]["joints"]):
         content.links.append(RawLink(name="world"))
         names[0] = "world"
     for number, body in enumerate(bodies):
         if number == 0:
             continue
-        joints = [joint for joint in body["joints"] if joint["type"] != _FREE]
-        if any(joint["type"] == _BALL for joint in joints):
-            raise AssetError(
-                path.name, "it has ball joints; hinges, slides and fixed ones are read"
-            )
+        joints = [one for joint in body["joints"] for one in _plain_joints(joint, names[number])]
         own = geoms.get(number, [])
         content.links.append(_link(names[number], body, own, arrays))
         if names[body["parent"]] in {link.name for link in content.links}:
             _add_joints(content, names[body["parent"]], names[number], body, joints, followers)
     return content
+
+
+def _is_free(body: Mapping[str, Any]) -> bool:
+    return any(joint["type"] == _FREE for joint in body["joints"])
+
+
+def _place(tree: XmlNode, body: str) -> str:
+    """Return where a body is described, as file:line:column."""
+    nodes = [node for node in tree.walk() if node.tag == "body" and node.text("name") == body]
+    return nodes[0].place if nodes else tree.file
+
+
+def _plain_joints(joint: Mapping[str, Any], body: str) -> list[Mapping[str, Any]]:
+    """Return the hinges and slides of which a joint is made; none of one that is free."""
+    if joint["type"] == _FREE:
+        return []
+    if joint["type"] != _BALL:
+        return [joint]
+    w, x, y, z = joint["start_quat_wxyz"]
+    turn = Pose(orientation_xyzw=(x, y, z, w)).matrix()[:3, :3]
+    starts = (
+        np.arctan2(-turn[1, 2], turn[2, 2]),
+        np.arcsin(np.clip(turn[0, 2], -1.0, 1.0)),
+        np.arctan2(-turn[0, 1], turn[0, 0]),
+    )
+    most = joint["range"][1] if joint["limited"] else np.inf
+    name = joint["name"] or f"{body} ball"
+    hinges: list[Mapping[str, Any]] = []
+    for letter, axis, start in zip("xyz", np.eye(3).tolist(), starts, strict=True):
+        reach = min(most, MIDDLE_RAD) if letter == "y" else most
+        hinge = {"name": f"{name} {letter}", "type": _HINGE, "axis": axis, "start": float(start)}
+        hinge |= {"limited": bool(np.isfinite(reach)), "range": [-reach, reach], "reference": 0.0}
+        hinges.append({**joint, **hinge})
+    return hinges
 
 
 def _add_joints(

@@ -16,16 +16,16 @@ from types import MappingProxyType
 
 from sailenv_ros.assets.archives import MAX_ARCHIVE_BYTES
 from sailenv_ros.assets.robots.assembling import assembled
+from sailenv_ros.assets.robots.mesh_paths import PACKAGE, package_path
 from sailenv_ros.assets.robots.mjcf_file import MjcfContent, read_mjcf
 from sailenv_ros.assets.robots.urdf_file import described, read_urdf
 from sailenv_ros.assets.safe_xml import read_xml
-from sailenv_ros.errors import AssetError, UnknownName
+from sailenv_ros.errors import AssetError, AssetMissing, UnknownName
 from sailenv_ros.types.model import Asset
-from sailenv_ros.types.robots import RobotModel
+from sailenv_ros.types.robots import LINK_ASSETS, RobotModel
 
-__all__ = ["RobotStore", "robot_path"]
+__all__ = ["RobotStore", "is_of_package", "robot_path"]
 
-FORM = "robot:"
 _PACKAGE = re.compile(r"([A-Za-z_][A-Za-z0-9_]*):(?!//)(.+)")
 _LINK = re.compile(r"[A-Za-z0-9 _.-]+")
 _LONGEST_LINK = 40
@@ -42,14 +42,14 @@ def robot_path(file: str, beside: Path | None = None) -> Path:
     Parameters
     ----------
     file : str
-        A path; or ``PACKAGE:path``, a file of an installed Python package such as
-        ``pybullet_data:franka_panda/panda.urdf``.
+        A path; ``PACKAGE:path``, a file of an installed Python package such as
+        ``pybullet_data:franka_panda/panda.urdf``; or ``package://NAME/path``, one of ROS.
     beside : Path or None
         Folder from which paths are looked for first.
 
     Raises
     ------
-    AssetError
+    AssetMissing
         If it is not there.
     """
     found = _PACKAGE.fullmatch(file)
@@ -61,11 +61,13 @@ def robot_path(file: str, beside: Path | None = None) -> Path:
             if path.is_relative_to(home) and path.is_file():
                 return path
         why = f"the Python package {found[1]!r} is not installed, or has no such file"
-        raise AssetError(file[:200], why)
+        raise AssetMissing(file[:200], why)
+    if file.startswith(PACKAGE):
+        return package_path(file)
     for path in (*(() if beside is None else (beside / file,)), Path(file)):
         if "\0" not in file and path.is_file():
             return path.resolve()
-    raise AssetError(file[:200], "there is no such file")
+    raise AssetMissing(file[:200], "there is no such file")
 
 
 class RobotStore:
@@ -83,7 +85,7 @@ class RobotStore:
 
     def speaks_of(self, name: str) -> bool:
         """Return whether a name is that of a link."""
-        return name.startswith(FORM)
+        return name.startswith(LINK_ASSETS)
 
     def load(self, name: str) -> Asset:
         """Return the asset of a link.
@@ -125,7 +127,7 @@ class RobotStore:
         data = path.read_bytes()
         digest = hashlib.blake2b(data + str(path).encode(), digest_size=5).hexdigest()
         stem = re.sub(r"[^A-Za-z0-9_.-]", "_", path.stem)[:20]
-        key = f"{FORM}{stem}:{digest}"
+        key = f"{LINK_ASSETS}{stem}:{digest}"
         with self._lock:
             model = self._models.get(key)
         if model is None:

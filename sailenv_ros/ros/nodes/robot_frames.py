@@ -25,9 +25,16 @@ MAP, ODOM, BASE = "map", "odom", "base_link"
 
 
 def ros_name(robot: str) -> str:
-    """Return the name of a robot as topics and frames have it: letters, digits, underscores."""
-    plain = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in robot.lower())
-    return plain if plain[0].isalpha() else f"r{plain}"
+    """Return the name of a robot as topics and frames have it: letters, digits, underscores.
+
+    What is before a dot is a namespace: ``one.cart`` becomes ``one/cart``.
+    """
+    return "/".join(_token(part) for part in robot.lower().split("."))
+
+
+def _token(name: str) -> str:
+    plain = "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in name)
+    return plain if plain[:1].isalpha() else f"r{plain}"
 
 
 def map_transform() -> TransformStamped:

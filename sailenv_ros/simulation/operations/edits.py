@@ -11,6 +11,7 @@ from sailenv_ros.simulation.editing.edit_records import ObjectRecord, Surroundin
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
 from sailenv_ros.simulation.operations.targets import HasEditor, HasWorld
+from sailenv_ros.simulation.robot_entries import RobotRecord, robot_record
 from sailenv_ros.types.geometry import Pose
 
 __all__ = ["EditOperations"]
@@ -51,6 +52,38 @@ class EditOperations(Caller):
             core.announce()
             return 0
         return edit_records.change_back(core.editor, present, wanted)
+
+    @operation(obj=check.object_reference)
+    @staticmethod
+    def robot_of_object(core: HasWorld, obj: int | str) -> str:
+        """Return the name of the robot of which an object is a link; empty for none."""
+        return core.world.body(core.world.find(obj)).placement.robot
+
+    @operation(robot=check.text)
+    @staticmethod
+    def robot_record(core: HasWorld, robot: str) -> RobotRecord:
+        """Take down a robot as it is now."""
+        return robot_record(core.world.robots[robot])
+
+    @operation(deadline_s=120.0)
+    @staticmethod
+    def restore_robot(
+        core: HasEditor, present: RobotRecord | None, wanted: RobotRecord | None
+    ) -> int:
+        """Take a robot out, or bring one back; return the id of its first link, 0 for none.
+
+        Raises
+        ------
+        UnknownName, NameTaken, InvalidEntry, AssetError
+            If others have changed it so that it cannot be done; nothing is done then.
+        """
+        if present is not None:
+            core.world.despawn_robot(core.world.robots[present.name].name)
+            core.announce()
+        if wanted is None:
+            return 0
+        name = core.editor.spawn_robot(wanted.entry, wanted.pose)
+        return next(iter(core.world.robot_state(name).links.values()))
 
     @operation(obj=check.object_reference, pose=check.pose)
     @staticmethod

@@ -9,26 +9,25 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from sailenv_ros.assets.robots import is_of_package, keep_description, robot_path
 from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.errors import SailenvError
 from sailenv_ros.simulation.operations import argument_checks as check
 from sailenv_ros.simulation.operations.operation import Caller, operation
 from sailenv_ros.simulation.operations.targets import HasEditor, HasLibrary, HasWorld, ViewsScene
-from sailenv_ros.simulation.space_queries import solids_of_body, solids_of_world
+from sailenv_ros.simulation.present_entities import Box, box_of, entities_of, robot_of
+from sailenv_ros.simulation.space_queries import solids_of_world
 from sailenv_ros.space.outlines import Solid
-from sailenv_ros.space.solid_distances import collision_box, solid_distance_m, solids_overlap
+from sailenv_ros.space.solid_distances import collision_box, solid_distance_m
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.entities import AssetOutline, Entity, NamedPose
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.validation import vector
-from sailenv_ros.world.bodies import Body
 
 __all__ = ["EntityOperations"]
 
 Vector3 = tuple[float, float, float]
-Box = tuple[Vector3, Vector3]
 
 NOT_MOVING = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
@@ -42,60 +41,40 @@ class EntityOperations(Caller):
     @operation()
     @staticmethod
     def entities(core: HasWorld, region: Solid | None = None) -> tuple[Entity, ...]:
-        """Return every object, in the order of the ids; or those that a region touches.
+        """Return every object and robot, or those that a region touches; see `entities_of`.
 
         Parameters
         ----------
         region : Solid or None
             In the world; collision shapes count, or the drawn box of what has none.
         """
-        world = core.world
-        added, moving, states = set(world.added_ids), world.moving_ids, world.states()
-        rows = {int(number): row for row, number in enumerate(states.ids)}
-        accelerations = world.accelerations()
-        found = []
-        for drawn in world.contents.instances:
-            one = drawn.instance
-            if one.is_part:
-                continue
-            body = world.body(one.id)
-            if region is not None and not _touches(body, one.low_m, one.high_m, region):
-                continue
-            row = rows[one.id]
-            found.append(
-                Entity(
-                    id=one.id,
-                    name=one.name,
-                    asset=one.asset,
-                    category=one.category,
-                    static=one.static,
-                    moving=one.id in moving,
-                    added=one.id in added,
-                    pose=body.pose(),
-                    linear_velocity=vector("velocity", states.linear_velocities[row]),
-                    angular_velocity=vector("velocity", states.angular_velocities[row]),
-                    linear_acceleration=accelerations[one.id][0],
-                    angular_acceleration=accelerations[one.id][1],
-                    sim_time_ns=world.sim_time_ns,
-                )
-            )
-        return tuple(found)
+        return entities_of(core.world, region)
 
-    @operation(obj=check.object_reference)
+    @operation()
     @staticmethod
-    def entity_box(core: HasWorld, obj: int | str) -> Box:
-        """Return the box around an object's collision shapes in its own frame [m].
+    def entity_box(core: HasWorld, entity: int) -> Box:
+        """Return the box around an entity's collision shapes in its own frame [m].
 
         Around what is drawn, where it has no collision shapes.
         """
-        number = core.world.find(obj)
-        placement = core.world.body(number).placement
-        box = collision_box(placement.asset.collision, placement.scale)
-        if box is None:
-            instances = (drawn.instance for drawn in core.world.contents.instances)
-            one = next(one for one in instances if one.id == number)
-            return one.low_m, one.high_m
-        return vector("low", box[0]), vector("high", box[1])
+        return box_of(core.world, entity)
+
+    @operation()
+    @staticmethod
+    def remove_entity(core: HasEditor, entity: int) -> None:
+        """Remove an object, or a robot with all its links.
+
+        Raises
+        ------
+        InvalidRequest, InvalidState
+            If it is a link, carries something on a joint, or lessons name it.
+        """
+        if entity < 0:
+            core.world.despawn_robot(robot_of(core.world, entity).name)
+        else:
+            core.editor.require_untaught(entity)
+            core.world.despawn(entity)
+        core.announce()
 
     @operation(pose=check.pose)
     @staticmethod
@@ -109,19 +88,68 @@ class EntityOperations(Caller):
         still = {} if asset.collision else {"static": True}
         return core.editor.spawn({**still, **entry}, pose)
 
-    @operation(obj=check.object_reference, pose=check.optional(check.pose))
+    @operation(file=check.text)
+    @staticmethod
+    def robot_file(core: HasLibrary, file: str) -> str:
+        """Return a path of a robot's file, or ``PACKAGE:path``, which is there.
+
+        Raises
+        ------
+        AssetMissing
+            If it is not.
+        """
+        return file if is_of_package(file) and robot_path(file) else str(robot_path(file))
+
+    @operation(deadline_s=120.0, file=check.text)
+    @staticmethod
+    def robot_name(core: HasLibrary, file: str) -> str:
+        """Return the name that a robot has in its file.
+
+        Raises
+        ------
+        AssetError
+            If it cannot be read.
+        """
+        return core.library.robots.find(file).name
+
+    @operation(deadline_s=120.0, text=check.text)
+    @staticmethod
+    def sent_robot(core: HasLibrary, text: str) -> str:
+        """Keep the text of a URDF or MJCF file; return the path of the file that it is then.
+
+        Raises
+        ------
+        AssetError
+            If it cannot be read; it is not kept then.
+        """
+        path = keep_description(text)
+        try:
+            core.library.robots.read(path)
+        except BaseException:
+            path.unlink(missing_ok=True)
+            raise
+        return str(path)
+
+    @operation(deadline_s=120.0, pose=check.pose)
+    @staticmethod
+    def spawn_robot_entry(core: HasEditor, entry: Mapping[str, Any], pose: Pose) -> int:
+        """Add a robot with the keys of a scene file, but for its place; return its entity's id."""
+        name = core.editor.spawn_robot(entry, pose)
+        return -next(iter(core.world.robot_state(name).links.values()))
+
+    @operation(pose=check.optional(check.pose))
     @staticmethod
     def set_entity(
         core: HasWorld,
-        obj: int | str,
+        entity: int,
         pose: Pose | None,
         velocities: tuple[Vector3, Vector3] | None,
     ) -> None:
-        """Put an object somewhere at once, and let it move on at a velocity.
+        """Put an object or robot somewhere at once, and let it move on at a velocity.
 
         Parameters
         ----------
-        obj : int or str
+        entity : int
         pose : Pose or None
             None leaves it where it is.
         velocities : tuple of two (3,) tuples of float, or None
@@ -133,8 +161,7 @@ class EntityOperations(Caller):
         UnknownName, InvalidRequest
             If one of them cannot be; nothing is changed then.
         """
-        world = core.world
-        number = world.find(obj)
+        world, number = core.world, abs(entity)
         if velocities == NOT_MOVING and world.body(number).placement.static:
             velocities = None
         if velocities is not None:
@@ -154,17 +181,20 @@ class EntityOperations(Caller):
     @operation()
     @staticmethod
     def remove_added(core: HasEditor) -> None:
-        """Remove every object that was spawned since the scene began.
+        """Remove every object and robot that was spawned since the scene began.
 
         Raises
         ------
         InvalidState
             If lessons name one of them; nothing is removed then.
         """
-        for number in core.world.added_ids:
+        world = core.world
+        for number in world.added_ids:
             core.editor.require_untaught(number)
-        for number in reversed(core.world.added_ids):  # what hangs on another came after it
-            core.world.despawn(number)
+        for robot in world.robots.added:
+            world.despawn_robot(robot)
+        for number in reversed(world.added_ids):  # what hangs on another came after it
+            world.despawn(number)
         core.announce()
 
     @operation(deadline_s=120.0)
@@ -247,14 +277,3 @@ class EntityOperations(Caller):
         tags = ["room" if spec.room is not None else "open"]
         tags += ["lessons"] if spec.lessons else []
         return spec.title or spec.name, tuple(tags)
-
-
-def _touches(body: Body, low_m: Vector3, high_m: Vector3, region: Solid) -> bool:
-    if body.collides:
-        return any(solids_overlap(solid, region) for solid in solids_of_body(body))
-    matrix = body.world_from_body()
-    corners: NDArray[np.float64] = np.array(
-        [(x, y, z) for x in (low_m[0], high_m[0]) for y in (low_m[1], high_m[1])
-         for z in (low_m[2], high_m[2])]
-    )  # fmt: skip
-    return solids_overlap(Solid(corners @ matrix[:3, :3].T + matrix[:3, 3]), region)

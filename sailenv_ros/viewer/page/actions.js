@@ -118,6 +118,18 @@ export class Actions {
     this.select(made.id);
   }
 
+  /**
+   * Put a robot ahead.
+   * @param {string} file
+   */
+  async addRobot(file) {
+    const { frame } = this.#store.state;
+    if (!frame) return;
+    const middle = { frame: frame.number, u: Math.floor(frame.width / 2), v: Math.floor(0.62 * frame.height) };
+    const made = await this.try("add_robot", { file, ...middle });
+    if (made) this.select(made);
+  }
+
   /** @param {Pixel} at */
   async place(at) {
     this.endPlacing();

@@ -1,5 +1,5 @@
 // @ts-check
-// The catalogue: what can be put into the scene, by a click or by dragging it into a picture.
+// The catalogue: what can be put into the scene, by a click or by dragging it into a picture; robots.
 
 import { el, keyed, section } from "./dom.js";
 
@@ -12,6 +12,10 @@ export class AddPanel {
   #search = el("input", {
     type: "search", placeholder: "Search the catalogue", id: "catalogue-search",
     on: { input: () => this.#filter() },
+  });
+  #robot = el("input", {
+    type: "text", placeholder: "PACKAGE:path of a URDF or MJCF file", id: "robot-file",
+    on: { change: () => this.#actions.addRobot(this.#robot.value.trim()) },
   });
   #cards = el("div", { class: "cards", id: "catalogue" });
 
@@ -26,7 +30,7 @@ export class AddPanel {
       this.#search,
       el("p", { class: "advice" }, "Click to put one where you look; or drag it into the picture."),
       this.#cards,
-    ));
+    ), section("Robot", this.#robot));
     store.on(["scene"], ({ scene }) => {
       keyed(this.#cards, scene?.spawnables ?? [], (asset) => asset, (asset) => ({ root: this.#card(asset) }));
       this.#filter();

@@ -530,6 +530,7 @@ export type Shown = ShownMessage;
 export interface Commands {
   add_behaviour: { values: { obj: number | string; behaviour: Record<string, any> }; result: ObjectValues };
   add_light: { values: { light_type: "directional" | "point" | "spot" | "area"; light_name?: string | null; attributes?: LightAttributes | null }; result: string };
+  add_robot: { values: { file: string; u: number; v: number; frame?: number | null; mount?: string }; result: number };
   add_waypoint: { values: { mover: string }; result: PoseValues };
   change_object: { values: { obj: number | string; changes?: ObjectChanges }; result: ObjectValues };
   change_scene: { values: { scene: string }; result: null };

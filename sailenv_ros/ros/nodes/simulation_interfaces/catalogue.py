@@ -12,8 +12,8 @@ from simulation_interfaces.msg import Bounds, NamedPose, Result, Spawnable
 from sailenv_msgs_py.transforms import pose_to_msg
 from sailenv_ros.ros.nodes.simulation_interfaces.desk import Desk
 from sailenv_ros.ros.nodes.simulation_interfaces.filters import box_to_bounds, tags_filter
+from sailenv_ros.ros.nodes.simulation_interfaces.resources import asset_uri
 from sailenv_ros.ros.nodes.simulation_interfaces.results import Refusal
-from sailenv_ros.ros.nodes.simulation_interfaces.spawning import asset_uri
 from sailenv_ros.ros.nodes.simulation_interfaces.versions import set_resource_uri
 from sailenv_ros.simulation.operations.entity_operations import EntityOperations
 from sailenv_ros.types import entities

@@ -13,6 +13,7 @@ from sailenv_ros.ros.nodes.simulation_interfaces.results import Refusal
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.operations import Operation
 from sailenv_ros.types.entities import AssetOutline, Entity, NamedPose
+from sailenv_ros.types.robots import first_links, link_of_asset
 from sailenv_ros.types.scene_info import SceneInfo
 
 __all__ = ["Desk", "Told"]
@@ -128,13 +129,30 @@ class Desk:
 
     @property
     def ids(self) -> Mapping[str, int]:
-        """Instance ids of all entities by their names with namespaces."""
+        """Ids of all entities by their names with namespaces; see `Entity.id`."""
+        names, instances = self.notes.names, self.info.instances
+        objects = {one.id: one.name for one in instances if not one.is_part}
+        robots = {-number: name for name, number in first_links(instances).items()}
+        return {names.get(number, name): number for number, name in (objects | robots).items()}
+
+    def rename(self, number: int, plain: str, name: str) -> None:
+        """Take note of the name with its namespace of what the scene calls otherwise."""
         names = self.notes.names
-        objects = (one for one in self.info.instances if not one.is_part)
-        return {names.get(one.id, one.name): one.id for one in objects}
+        names[number] = name
+        if number < 0:
+            for one in self.info.instances:
+                link = link_of_asset(one.asset)
+                if link and one.name == f"{plain} {link}":
+                    names[one.id] = f"{name} {link}"
+
+    @property
+    def plain_names(self) -> frozenset[str]:
+        """Names that the scene has for objects and robots."""
+        instances = self.info.instances
+        return frozenset((*(one.name for one in instances), *first_links(instances)))
 
     def find(self, name: str) -> int:
-        """Return the instance id of an entity.
+        """Return the id of an entity.
 
         Raises
         ------

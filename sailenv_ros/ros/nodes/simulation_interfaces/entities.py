@@ -21,7 +21,6 @@ from sailenv_ros.ros.nodes.simulation_interfaces.frames import (
 )
 from sailenv_ros.ros.nodes.simulation_interfaces.results import Refusal, unsupported
 from sailenv_ros.ros.nodes.simulation_interfaces.versions import is_set
-from sailenv_ros.simulation.operations import Operations
 from sailenv_ros.simulation.operations.entity_operations import EntityOperations
 from sailenv_ros.types.entities import Entity
 
@@ -111,8 +110,8 @@ async def get_entity_bounds(desk: Desk, request: Any, response: Any) -> None:
 
 
 async def delete_entity(desk: Desk, request: Any, response: Any) -> None:
-    """Remove an entity."""
-    await desk.do(Operations.despawn_object, desk.find(request.entity))
+    """Remove an entity; a robot goes with its links."""
+    await desk.do(EntityOperations.remove_entity, desk.find(request.entity))
 
 
 async def _entity(desk: Desk, name: str) -> Entity:

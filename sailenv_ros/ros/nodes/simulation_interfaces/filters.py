@@ -36,7 +36,9 @@ def told_of(desk: Desk, entity: Entity) -> Told:
     told = desk.notes.told.get(entity.id)
     if told is not None:
         return told
-    if entity.category == HUMAN:
+    if entity.id < 0:
+        category = EntityCategory.CATEGORY_ROBOT
+    elif entity.category == HUMAN:
         category = EntityCategory.CATEGORY_HUMAN
     elif entity.static:
         category = EntityCategory.CATEGORY_STATIC_OBJECT

@@ -88,5 +88,5 @@ async def _frame(desk: Desk, frame_id: str, invalid: int) -> Pose:
     if number is None:
         sentence = f"frame_id must be empty, {WORLD_FRAME_ID} or an entity, got {frame_id!r}"
         raise Refusal(invalid, sentence)
-    state = await desk.do(Operations.get_object, number)
+    state = await desk.do(Operations.get_object, abs(number))
     return state.pose

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
-from urllib.parse import quote, unquote
 
 from rclpy.exceptions import InvalidNamespaceException
 from rclpy.validate_namespace import validate_namespace
@@ -14,27 +12,15 @@ from simulation_interfaces.srv import SpawnEntity
 from sailenv_ros.errors import AssetError, InvalidEntry, NameTaken, SailenvError, UnknownName
 from sailenv_ros.ros.nodes.simulation_interfaces.desk import Desk
 from sailenv_ros.ros.nodes.simulation_interfaces.frames import pose_in_world
+from sailenv_ros.ros.nodes.simulation_interfaces.resources import Spawned, spawned_by
 from sailenv_ros.ros.nodes.simulation_interfaces.results import Refusal, code_of, refused
 from sailenv_ros.ros.nodes.simulation_interfaces.versions import resource_of
-from sailenv_ros.scene.entries import free_name, read_document
+from sailenv_ros.scene.entries import free_name
 from sailenv_ros.simulation.operations.entity_operations import EntityOperations
 
-__all__ = ["ASSET_SCHEME", "asset_uri", "spawn_entities", "spawn_entity"]
-
-ASSET_SCHEME = "sailenv://asset/"
-"""Begin of the URI of an asset of the catalogue."""
-
-FORMAT = "sailenv"
-"""Name of the format of `resource_string`: an object as a scene file describes it."""
-
-MOST_CHARACTERS = 64 * 1024
+__all__ = ["spawn_entities", "spawn_entity"]
 
 Code = SpawnEntity.Response
-
-
-def asset_uri(name: str) -> str:
-    """Return the URI of an asset."""
-    return ASSET_SCHEME + quote(name)
 
 
 async def spawn_entity(desk: Desk, request: Any, response: Any) -> None:
@@ -61,19 +47,20 @@ async def spawn_entities(desk: Desk, request: Any, response: Any) -> None:
 
 
 async def _spawn(desk: Desk, request: Any) -> str:
-    entry = _entry(*resource_of(request, "entity_resource"))
-    name = _name(desk, request, str(entry.get("name") or ""), str(entry.get("asset")))
+    spawned = await spawned_by(desk, *resource_of(request, "entity_resource"))
+    name = _name(desk, request, spawned)
     pose = await pose_in_world(
         desk, request.initial_pose.header.frame_id, request.initial_pose.pose, Code.INVALID_POSE
     )
     # Slashes separate namespaces in names of entities; the scene's own names have none.
-    own = {one.name for one in desk.info.instances}
+    own = desk.plain_names
     plain = name.replace("/", ".")
     plain = free_name(plain, own) if plain in own else plain
+    spawn = EntityOperations.spawn_robot_entry if spawned.is_robot else EntityOperations.spawn_entry
     try:
-        number = await desk.do(EntityOperations.spawn_entry, {**entry, "name": plain}, pose)
+        number = await desk.do(spawn, {**spawned.entry, "name": plain}, pose)
     except InvalidEntry as problem:
-        wrong_name = any(field == "name" for field, _ in problem.diagnostics)
+        wrong_name = any(field.endswith("name") for field, _ in problem.diagnostics)
         code = Code.NAME_INVALID if wrong_name else Code.RESOURCE_PARSE_ERROR
         raise Refusal(code, str(problem)) from None
     except SailenvError as problem:
@@ -84,11 +71,11 @@ async def _spawn(desk: Desk, request: Any) -> str:
         }
         raise refused(problem, codes) from None
     if plain != name:
-        desk.notes.names[number] = name
+        desk.rename(number, plain, name)
     return name
 
 
-def _name(desk: Desk, request: Any, name_in_resource: str, asset: str) -> str:
+def _name(desk: Desk, request: Any, spawned: Spawned) -> str:
     """Return the name with its namespace that the entity shall have."""
     space = request.entity_namespace.strip("/")
     if space:
@@ -96,7 +83,7 @@ def _name(desk: Desk, request: Any, name_in_resource: str, asset: str) -> str:
             validate_namespace(f"/{space}")
         except InvalidNamespaceException as problem:
             raise Refusal(Code.NAMESPACE_INVALID, " ".join(str(problem).split())) from None
-    name = request.name or name_in_resource
+    name = request.name or spawned.name
     if "/" in name:
         sentence = f"name must have no '/', which separates namespaces, got {name!r}"
         raise Refusal(Code.NAME_INVALID, sentence)
@@ -110,34 +97,6 @@ def _name(desk: Desk, request: Any, name_in_resource: str, asset: str) -> str:
             raise Refusal(Code.NAME_INVALID, sentence)
         sentence = f"an entity {prefix + name!r} is there already; see allow_renaming"
         raise Refusal(Code.NAME_NOT_UNIQUE, sentence)
-    base = name or asset.replace(":", "_")
+    base = name or spawned.kind
     there = {one.removeprefix(prefix) for one in taken if one.startswith(prefix)}
     return prefix + free_name(base, there)
-
-
-def _entry(uri: str, text: str) -> Mapping[str, Any]:
-    """Return an object with keys of a scene file."""
-    if uri:
-        return {"asset": _asset(uri)}
-    if not text:
-        raise Refusal(Code.NO_RESOURCE, "a uri or a resource_string must be given")
-    if len(text) > MOST_CHARACTERS:
-        sentence = f"resource_string must have at most {MOST_CHARACTERS} characters"
-        raise Refusal(Code.RESOURCE_PARSE_ERROR, sentence)
-    try:
-        entry = read_document(text)
-    except SailenvError as problem:
-        raise refused(problem, {SailenvError: Code.RESOURCE_PARSE_ERROR}) from None
-    if not isinstance(entry, Mapping) or "asset" not in entry:
-        accepted = "an object as in a scene file, with its asset, such as {asset: cube, mass: 2}"
-        raise Refusal(Code.UNSUPPORTED_FORMAT, f"resource_string must be {accepted}")
-    return entry
-
-
-def _asset(uri: str) -> str:
-    if uri.startswith(ASSET_SCHEME):
-        return unquote(uri.removeprefix(ASSET_SCHEME))
-    if "://" in uri or "/" in uri:
-        sentence = f"uri must be {ASSET_SCHEME}NAME or a NAME of the catalogue, got {uri!r}"
-        raise Refusal(Code.UNSUPPORTED_FORMAT, sentence)
-    return uri

@@ -17,6 +17,7 @@ from sailenv_ros.ros.nodes.simulation_interfaces import (
     worlds,
 )
 from sailenv_ros.ros.nodes.simulation_interfaces.desk import Desk
+from sailenv_ros.ros.nodes.simulation_interfaces.resources import spawn_formats
 from sailenv_ros.version import __version__
 
 __all__ = ["ROWS", "Row", "features_of"]
@@ -110,9 +111,9 @@ def features_of() -> SimulatorFeatures:
     offered = {name for row in ROWS for name in row.features}.union(ACTION_FEATURES)
     return SimulatorFeatures(
         features=sorted(getattr(SimulatorFeatures, name) for name in offered),
-        spawn_formats=[spawning.FORMAT],
+        spawn_formats=spawn_formats(),
         custom_info=(
             f"sailenv_ros {__version__}; spawnables by sailenv://asset/NAME, worlds by "
-            "sailenv://scene/NAME; see docs/simulation_interfaces.md"
+            "sailenv://scene/NAME; robots by URDF and MJCF files; see docs/simulation_interfaces.md"
         ),
     )

@@ -7,6 +7,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sailenv_ros.assets.robots import RobotStore, robot_path
 from sailenv_ros.errors import AssetError
@@ -63,15 +64,48 @@ def test_links_stand_where_mujoco_has_them(tmp_path: Path) -> None:
     assert masses["shin"] == 0.5
 
 
-def test_worlds_of_several_and_ball_joints_are_refused(tmp_path: Path) -> None:
-    for text, why in (
-        ('<mujoco><worldbody><body/><body/></worldbody></mujoco>', "2 bodies"),
-        (ROBOT.format(free='<joint type="ball"/>'), "ball joints"),
-    ):  # fmt: skip
-        path = tmp_path / "robot.xml"
-        path.write_text(text, encoding="utf-8")
-        with pytest.raises(AssetError, match=why):
-            RobotStore().read(path)
+def test_a_ball_joint_is_three_hinges(tmp_path: Path) -> None:
+    """About x, y and z: the same turn as MuJoCo's quaternion, also of a keyframe."""
+    path = tmp_path / "leg.xml"
+    turn = Rotation.from_euler("XYZ", (0.4, -0.7, 1.1))
+    w, x, y, z = turn.as_quat()[[3, 0, 1, 2]]
+    text = ROBOT.format(free='<joint name="neck" type="ball" pos="0.01 0.02 0.03"/>')
+    key = f'<keyframe><key qpos="{w} {x} {y} {z} 0.1 0.1 0.1 0.15"/></keyframe></mujoco>'
+    path.write_text(text.replace("</mujoco>", key), encoding="utf-8")
+    robot = RobotStore().read(path)
+    assert robot.mount == "fixed"
+    assert [link.joint.name for link in robot.moving][:3] == ["neck x", "neck y", "neck z"]
+    assert [robot.start[f"neck {axis}"] for axis in "xyz"] == pytest.approx([0.4, -0.7, 1.1])
+    assert robot.moving[1].joint.limits == (-1.5, 1.5)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_kinematics(model, data)
+    positions = all_positions(robot, robot.start)
+    for name in ("hip", "thigh", "shin"):
+        ours = base_from_frame(robot, name, positions)
+        np.testing.assert_allclose(ours, _pose(data, model.body(name).id), atol=1e-9)
+
+
+def test_several_bodies_on_the_world_are_one_robot(tmp_path: Path) -> None:
+    """Its first link is the world; one of several that moves freely is refused, with its place."""
+    arm = '<body name="{0}" pos="{1} 0 0">{2}<geom name="{0}" size="0.1" mass="1"/></body>\n'
+    hinge = '<joint name="{}" axis="0 1 0"/>'
+    begin = '<mujoco><compiler angle="radian"/><worldbody>\n'
+    path = tmp_path / "arms.xml"
+    arms = arm.format("left", 1, hinge.format("l")) + arm.format("right", -1, hinge.format("r"))
+    path.write_text(f"{begin}{arms}</worldbody></mujoco>", encoding="utf-8")
+    robot = RobotStore().read(path)
+    assert [link.name for link in robot.links] == ["world", "left", "right"]
+    assert {link.parent for link in robot.moving} == {"world"}
+    assert robot.moving[1].joint.parent_from_rest.position_m == (-1.0, 0.0, 0.0)
+    free = arm.format("left", 1, "") + arm.format("cup", 0, "<freejoint/>")
+    path.write_text(f"{begin}{free}</worldbody></mujoco>", encoding="utf-8")
+    with pytest.raises(AssetError, match=r"arms.xml:3:1.*2 bodies.*moves freely"):
+        RobotStore().read(path)
+    path.write_text(f"{begin}</worldbody></mujoco>", encoding="utf-8")
+    with pytest.raises(AssetError, match="no body"):
+        RobotStore().read(path)
 
 
 @pytest.mark.parametrize(
