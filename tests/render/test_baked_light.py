@@ -233,9 +233,7 @@ def test_ground_truth_does_not_know_of_baked_light(render: Render) -> None:
 
 
 @pytest.mark.parametrize(("turn_deg", "seen"), [(-20.0, 0), (20.0, 2)])
-def test_metal_mirrors_what_lies_where_it_looks(
-    render: Render, turn_deg: float, seen: int
-) -> None:
+def test_metal_mirrors_what_lies_where_it_looks(render: Render, turn_deg: float, seen: int) -> None:
     """Turned down it shows the red floor aside of where the room is seen from, up the ceiling."""
     floor = model_of(box_mesh((10.0, 10.0, 0.2)), base_colour=(0.8, 0.0, 0.0, 1.0), roughness=1.0)
     ceiling = model_of(box_mesh((10.0, 10.0, 0.2)), base_colour=(0.0, 0.0, 0.8, 1.0), roughness=1.0)

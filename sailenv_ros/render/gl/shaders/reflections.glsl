@@ -4,7 +4,7 @@ uniform sampler3D reflections;     // octahedral, world frame; roughness along z
 uniform sampler2D reflection_table; // the point that each instance uses
 uniform vec3 reflection_from[REFLECTION_POINTS];
 uniform vec4 room_light[REFLECTION_POINTS];  // irradiance / pi there: c0, cx, cy, cz; luminance
-uniform vec3 room_low, room_high, eye;
+uniform vec3 room_low, room_high;
 uniform vec4 reflection_texel;     // share of the square without its border, layers per roughness,
                                    // layers of a point, of all points
 
