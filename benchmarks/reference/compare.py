@@ -1,11 +1,13 @@
 """Compare the renderer's pictures with those of a path tracer: same scene, same cameras.
 
-    python -m benchmarks.reference.compare [--scenes NAME ...] [--views NAME ...] [--samples N]
-        [--size W H] [--supersampling N] [--renderer native|opengl]
+    python -m benchmarks.reference.compare [--scenes NAME ...] [--views NAME ...] [--chosen N]
+        [--samples N] [--size W H] [--supersampling N] [--renderer native|opengl]
         [--moves N [--anew]] [--trace-only | --no-trace | --last] [--output FOLDER]
 
-Prints a table of SSIM, PSNR and FLIP per camera; writes it as JSON, all pictures, and a sheet
-(ours, reference, their difference) per scene to the folder. Traced pictures are kept in the cache.
+Prints a table of SSIM, PSNR and FLIP per camera, and how near objects that can move come in their
+mean colours; writes it as JSON, all pictures, and a sheet (ours, reference, their difference) per
+scene to the folder. Traced pictures are kept in the cache. Scenes that are not in `views.yaml`,
+such as ``generated:kitchen:70017``, are seen by cameras that their name chooses.
 With ``--moves`` rooms whose furniture has been moved (`moved.py`) are compared, too: the place that
 was left and the new one, in light that was baked before and refined after the move.
 """
@@ -13,6 +15,7 @@ was left and the new one, in light that was baked before and refined after the m
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import sys
 import tempfile
@@ -28,12 +31,16 @@ from PIL import Image
 
 from benchmarks.reference.curve import matched_stops, picture_of
 from benchmarks.reference.moved import moved_room
+from benchmarks.reference.objects import NEAR_DELTA_E, lines_on_objects, movable_ids, share_near
 from benchmarks.reference.parts import Parts
 from benchmarks.reference.regions import REGIONS, regions_of
 from benchmarks.reference.regions import VIEWS as SHOWN_BY
 from benchmarks.reference.scene_export import scene_of, sensor, without_outside
 from benchmarks.reference.tracing import HOME, ToolMissing, Traced, run_tool, traced_views
 from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.object_lights import with_object_light
+from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.contract import RenderBackend
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
@@ -42,6 +49,7 @@ from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.snapshot import WorldSnapshot
+from tests.support.plausible_views import plausible_views
 
 RENDERERS: dict[str, Callable[[], RenderBackend]] = {"native": NativeRenderer, "opengl": Renderer}
 
@@ -57,12 +65,15 @@ def main() -> int:
     """Trace, render, measure, show; 0 if every view was compared."""
     arguments = _arguments()
     picture = PictureSettings(supersampling=arguments.supersampling)
-    cameras = _cameras(arguments.scenes, arguments.views, tuple(arguments.size), picture)
+    listed = yaml.safe_load(VIEWS.read_text(encoding="utf-8"))
     rows: list[Row] = []
+    wanted = 0
     try:
-        for scene, views in cameras.items():
+        for scene in listed if arguments.scenes is None else arguments.scenes:
             snapshot = _snapshot(scene)
-            rows += _compared(scene, snapshot, views, arguments)
+            views = _cameras(listed.get(scene), snapshot, arguments, picture)
+            wanted += len(views) + 2 * arguments.moves
+            rows += _compared(scene.replace(":", "_"), snapshot, views, arguments)
             for number in range(arguments.moves):
                 moved, move = moved_room(scene, snapshot, number, anew=arguments.anew)
                 width, height = arguments.size
@@ -77,7 +88,6 @@ def main() -> int:
         return 1
     if not arguments.trace_only:
         _show(rows, arguments.output)
-    wanted = sum(len(views) + 2 * arguments.moves for views in cameras.values())
     return 0 if arguments.trace_only or len(rows) == wanted else 1
 
 
@@ -85,6 +95,9 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--scenes", nargs="+", default=None, help="of views.yaml; all of them")
     parser.add_argument("--views", nargs="+", default=None, help="names of cameras; all of them")
+    parser.add_argument(
+        "--chosen", type=int, default=3, metavar="N", help="cameras of scenes not in views.yaml"
+    )
     parser.add_argument("--samples", type=int, default=256, help="per pixel of the reference")
     parser.add_argument("--size", type=int, nargs=2, default=(320, 240), metavar=("W", "H"))
     parser.add_argument(
@@ -106,20 +119,33 @@ def _arguments() -> argparse.Namespace:
 
 
 def _cameras(
-    scenes: list[str] | None,
-    views: list[str] | None,
-    size: tuple[int, int],
-    picture: PictureSettings | None = None,
-) -> dict[str, dict[str, Camera]]:
-    known = yaml.safe_load(VIEWS.read_text(encoding="utf-8"))
-    return {
-        scene: {
-            name: _camera(view, size, picture)
-            for name, view in known[scene].items()
-            if views is None or name in views
+    listed: Mapping[str, Mapping[str, Any]] | None,
+    snapshot: WorldSnapshot,
+    arguments: argparse.Namespace,
+    picture: PictureSettings,
+) -> dict[str, Camera]:
+    """Return the cameras of a scene by name: those listed, or some that are chosen."""
+    width, height = arguments.size
+    if listed is None:
+        chosen = _chosen_cameras(snapshot, width, height, arguments.chosen)
+        cameras = {
+            f"view_{number}": replace(camera, picture=picture)
+            for number, camera in enumerate(chosen)
         }
-        for scene in (known if scenes is None else scenes)
-    }
+    else:
+        cameras = {name: _camera(view, (width, height), picture) for name, view in listed.items()}
+    names = cameras if arguments.views is None else arguments.views
+    return {name: camera for name, camera in cameras.items() if name in names}
+
+
+def _chosen_cameras(snapshot: WorldSnapshot, width: int, height: int, count: int) -> list[Camera]:
+    renderer = NativeRenderer()
+    try:
+        name = f"reference{snapshot.contents.scene}"
+        cameras = plausible_views(snapshot, renderer, name, width=width, height=height)
+        return list(itertools.islice(cameras, count))
+    finally:
+        renderer.close()
 
 
 def _camera(
@@ -138,9 +164,18 @@ def _snapshot(scene: str) -> WorldSnapshot:
         # The traced sky is as bright as it is.
         environment = replace(world.contents.environment, sky_blend=False)
         world.set_environment(environment)
-        return without_outside(world.snapshot())
+        return _with_light_on_objects(without_outside(world.snapshot()))
     finally:
         world.close()
+
+
+def _with_light_on_objects(snapshot: WorldSnapshot) -> WorldSnapshot:
+    """Return what the simulation shows: with the light on what can move, where there is a bake."""
+    if snapshot.contents.baked is None:
+        return snapshot
+    threads = thread_count()
+    scene = BakedScene(snapshot.contents.baked, snapshot.contents, threads)
+    return with_object_light(snapshot, scene, threads)
 
 
 def _compared(
@@ -163,10 +198,13 @@ def _compared(
         return []
     drawn = {name: cameras[name] for name in references}
     ours = _rendered(snapshot, drawn, RENDERERS[arguments.renderer])
-    regions = {name: regions_of(views) for name, views in ours.items()}
-    pictures = {name: views["rgb"] for name, views in ours.items()}
     stops = snapshot.contents.environment.exposure
-    return _measured(scene, pictures, regions, references, stops, arguments.output)
+    rows = _measured(scene, ours, movable_ids(snapshot), references, stops, arguments.output)
+    names = {drawn.instance.id: drawn.instance.name for drawn in snapshot.contents.instances}
+    for row in rows:
+        for thing in row["objects"]:
+            thing["name"] = names[thing["id"]]
+    return rows
 
 
 def _rendered(
@@ -189,8 +227,8 @@ def _rendered(
 
 def _measured(
     scene: str,
-    ours: Mapping[str, Picture],
-    regions: Mapping[str, Picture],
+    ours: Mapping[str, Mapping[str, NDArray[Any]]],
+    movable: NDArray[np.int64],
     references: Mapping[str, Traced],
     stops: float,
     output: Path,
@@ -200,20 +238,22 @@ def _measured(
     tiles: dict[str, Picture] = {}
     rows: list[Row] = []
     for name, traced in references.items():
-        best = matched_stops(traced.radiance, ours[name])
+        drawn, ids = ours[name]["rgb"], ours[name]["instance"]
+        best = matched_stops(traced.radiance, drawn)
         matched = picture_of(traced.radiance, best)
         for kind, picture in (("matched", matched), ("plain", picture_of(traced.radiance, stops))):
-            pairs[f"ours_{name}.{kind}"], pairs[f"reference_{name}.{kind}"] = ours[name], picture
-        pairs[f"regions_{name}.matched"] = regions[name]
+            pairs[f"ours_{name}.{kind}"], pairs[f"reference_{name}.{kind}"] = drawn, picture
+        pairs[f"regions_{name}.matched"] = regions_of(ours[name])
+        pairs[f"objects_{name}.matched"] = np.where(np.isin(ids, movable), ids, 0)
         halves = [picture_of(half, best) for half in traced.halves]
         pairs[f"ours_{name}.halves"], pairs[f"reference_{name}.halves"] = halves
         rows.append({"scene": scene, "view": name, "stops": best - stops, "noise": traced.noise})
         rows[-1]["noise_denoised"] = traced.noise_denoised
-        difference = np.abs(ours[name].astype(int) - matched.astype(int))
-        tiles[f"{name}: ours"] = ours[name]
+        difference = np.abs(drawn.astype(int) - matched.astype(int))
+        tiles[f"{name}: ours"] = drawn
         tiles[f"{name}: reference {best - stops:+.1f} stops"] = matched
         tiles[name] = np.minimum(2 * difference, 255).astype(np.uint8)
-        _save(output / f"{scene}_{name}_ours.png", ours[name])
+        _save(output / f"{scene}_{name}_ours.png", drawn)
         _save(output / f"{scene}_{name}_reference.png", matched)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "pairs.npz"
@@ -248,12 +288,14 @@ def _save(file: Path, picture: Picture) -> None:
 
 def _show(rows: list[Row], output: Path) -> None:
     print(
-        f"{'':22}{'SSIM':>8}{'PSNR':>8}{'FLIP':>8}{'stops':>8}{'halves':>8}   as it is: SSIM PSNR"
+        f"{'':22}{'SSIM':>8}{'PSNR':>8}{'FLIP':>8}{'stops':>8}{'halves':>8}{'things':>8}"
+        "   as it is: SSIM PSNR"
     )
     for row in rows:
         print(
             f"{row['scene'] + '/' + row['view']:22}{row['ssim']:8.3f}{row['psnr_db']:8.1f}"
             f"{row['flip']:8.3f}{row['stops']:+8.2f}{row['ssim_halves']:8.3f}"
+            f"{share_near(row['objects'], NEAR_DELTA_E):8.0%}"
             f"{row['ssim_unmatched']:18.3f}{row['psnr_db_unmatched']:5.1f}"
         )
     if rows:
@@ -267,6 +309,8 @@ def _show(rows: list[Row], output: Path) -> None:
         lost = np.mean([row["lost"] for row in rows], axis=0)
         parts = ", ".join(f"{name} {part:.3f}" for name, part in zip(REGIONS, lost, strict=True))
         print(f"of 1 - SSIM: {parts}")
+        for line in lines_on_objects(rows):
+            print(line)
     output.mkdir(parents=True, exist_ok=True)
     file = output / "comparison.json"
     file.write_text(json.dumps(rows, indent=1), encoding="utf-8")

@@ -1,9 +1,9 @@
-"""Similarity of two pictures: SSIM, PSNR, FLIP. Runs in the tracer's environment.
+"""Similarity of two pictures: SSIM, PSNR, FLIP, objects' colours. Runs in the tracer's environment.
 
     measure.py PAIRS.npz
 
-The file holds ``ours_NAME`` and ``reference_NAME``, (H, W, 3) uint8 each; a JSON object by name is
-printed.
+The file holds ``ours_NAME`` and ``reference_NAME``, (H, W, 3) uint8 each, and may hold
+``regions_NAME`` and ``objects_NAME``, (H, W); a JSON object by name is printed.
 """
 
 from __future__ import annotations
@@ -15,7 +15,27 @@ from typing import Any
 import flip_evaluator
 import numpy as np
 from numpy.typing import NDArray
+from skimage.color import deltaE_ciede2000, rgb2xyz, xyz2lab
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
+
+LEAST_PX = 150
+"""Objects that cover fewer pixels are not measured."""
+
+
+def differences_of_objects(
+    ours: NDArray[np.uint8], reference: NDArray[np.uint8], ids: NDArray[Any]
+) -> list[dict[str, Any]]:
+    """Return id, pixels and ΔE2000 of the mean colours (CIE XYZ, D65) of each object but 0."""
+    first, second = rgb2xyz(ours), rgb2xyz(reference)
+    found = []
+    for number, count in zip(*np.unique(ids[ids > 0], return_counts=True), strict=True):
+        if count < LEAST_PX:
+            continue
+        own = ids == number
+        means = [xyz2lab(xyz[own].mean(axis=0)) for xyz in (first, second)]
+        difference = float(deltaE_ciede2000(*means))
+        found.append({"id": int(number), "pixels": int(count), "delta_e": difference})
+    return found
 
 
 def measured(
@@ -49,15 +69,20 @@ def measured(
 def main() -> None:
     """Measure all pairs of a file."""
     pairs: Any = np.load(sys.argv[1])
+    given = set(pairs.files)
     names = [key.removeprefix("ours_") for key in pairs.files if key.startswith("ours_")]
     result = {
         name: measured(
             pairs[f"ours_{name}"],
             pairs[f"reference_{name}"],
-            pairs[f"regions_{name}"] if f"regions_{name}" in pairs.files else None,
+            pairs[f"regions_{name}"] if f"regions_{name}" in given else None,
         )
         for name in names
     }
+    for name in names:
+        if f"objects_{name}" in given:
+            pair = pairs[f"ours_{name}"], pairs[f"reference_{name}"]
+            result[name]["objects"] = differences_of_objects(*pair, pairs[f"objects_{name}"])
     print(json.dumps(result))
 
 

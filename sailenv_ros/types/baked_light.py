@@ -20,6 +20,7 @@ __all__ = [
     "BakedLight",
     "LightChart",
     "LightLayer",
+    "ObjectLight",
     "ProbeGrid",
     "SunEdges",
     "Unwrapping",
@@ -145,6 +146,27 @@ class LightLayer:
     visibility: NDArray[np.uint8] | None = None
     clear: float = 1.0
     edges: SunEdges | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class ObjectLight:
+    """Contribution of each layer to the light on one object that can move, where it stands.
+
+    Terms give irradiance / pi on a surface by its normal and place in the world, as
+    `irradiance_of_terms` of light_law.h has them: 1, three of band 1, five of band 2, three of the
+    place.
+
+    Attributes
+    ----------
+    bounced : (L, 12, 3) float32
+        By layer, term and colour: what comes from surfaces, the sky and what glows.
+    direct : (L, 12) float32
+        What arrives straight from the layer's light, with soft shadows; 0 for directional lights,
+        which light moving things in real time, and the surroundings.
+    """
+
+    bounced: NDArray[np.float32]
+    direct: NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

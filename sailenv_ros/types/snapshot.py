@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.baked_light import BakedLight, ObjectLight
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.labels import CategoryTable, Instance
@@ -138,6 +138,9 @@ class WorldSnapshot:
         asked to teleport). Flow exists between two snapshots only for equal numbers.
     deformations : mapping of int to Deformation
         Of the instances that deform, by their ids; the same object while a shape is unchanged.
+    object_light : mapping of int to ObjectLight
+        Light on what can move, by instance id, where it is known better than by probes; of the
+        layers of the contents' baked light. The same mapping while nothing of it is changed.
     """
 
     sim_time_ns: int
@@ -146,6 +149,7 @@ class WorldSnapshot:
     world_from_body: NDArray[np.float64]
     histories: NDArray[np.int64]
     deformations: Mapping[int, Deformation] = field(default_factory=dict)
+    object_light: Mapping[int, ObjectLight] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         count = len(self.contents.instances)

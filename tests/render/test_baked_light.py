@@ -230,3 +230,26 @@ def test_ground_truth_does_not_know_of_baked_light(render: Render) -> None:
         found.append(render(scene, camera_at(), "rgb", *views, past=(scene, camera_at(FORWARD))))
     for view in views:
         assert found[0][view].tobytes() == found[1][view].tobytes(), view
+
+
+@pytest.mark.parametrize(("turn_deg", "seen"), [(-20.0, 0), (20.0, 2)])
+def test_metal_mirrors_what_lies_where_it_looks(render: Render, turn_deg: float, seen: int) -> None:
+    """Turned down it shows the red floor aside of where the room is seen from, up the ceiling."""
+    floor = model_of(box_mesh((10.0, 10.0, 0.2)), base_colour=(0.8, 0.0, 0.0, 1.0), roughness=1.0)
+    ceiling = model_of(box_mesh((10.0, 10.0, 0.2)), base_colour=(0.0, 0.0, 0.8, 1.0), roughness=1.0)
+    metal = model_of(wall_mesh(2.0, 2.0), metallic=1.0, roughness=0.25)
+    below, above = Pose((0.0, 0.0, -5.0)), Pose((0.0, 0.0, 5.0))
+    even = layer(None, bounced=1.0, probe_bounced=np.array([1.0, 0.0, 0.0, 0.0])[:, None])
+    light = baked({1: chart(floor, below), 2: chart(ceiling, above)}, [], even)
+    turned = Pose.from_rpy_deg((3.0, 0.0, 0.0), (0.0, turn_deg, 0.0))
+    scene = snapshot_of(
+        [Thing(floor, below), Thing(ceiling, above), Thing(metal, turned)],
+        lights=(),
+        environment=DARK,
+        baked=light,
+    )
+    camera = camera_at()
+    height, width = camera.intrinsics.height, camera.intrinsics.width
+    got = linear(render(scene, camera, "rgb")["rgb"])[height // 2, width // 2]
+    assert got[seen] > 0.3
+    assert got[2 - seen] < 0.25 * got[seen]

@@ -20,6 +20,8 @@ class Quality:
         From each patch to each area light, from each texel to each other light.
     probe_rays : int
         From each probe.
+    object_points, object_rays : int
+        Points of each object that can move, and rays from each of them.
     smoothing : int
         How many patches to each side are averaged over at most.
     least : float
@@ -41,6 +43,8 @@ class Quality:
     area_rays: int = 16
     light_rays: int = 16
     probe_rays: int = 128
+    object_points: int = 64
+    object_rays: int = 64
     smoothing: int = 2
     least: float = 0.002
     bounces: int = 8
@@ -55,6 +59,8 @@ QUICK = Quality(
     area_rays=2,
     light_rays=4,
     probe_rays=16,
+    object_points=24,
+    object_rays=24,
     smoothing=3,
     least=0.02,
     bounces=4,

@@ -42,6 +42,14 @@ class RayWorld:
     changed: list[PlacedInstance]
     kept: tuple[object, ...]
 
+    def with_more(self, things: Sequence[PlacedInstance]) -> RayWorld:
+        """Return the same with a few things that stand there, too, and were not baked."""
+        changed = [*self.changed, *things]
+        rows, _ = ray_instances(changed)
+        made = self.record.copy()
+        made["changed_at"], made["changed_count"] = address(rows), len(rows)
+        return RayWorld(made, changed, (*self.kept, rows))
+
 
 def ray_world(
     scene: BakedScene,

@@ -2,12 +2,14 @@
 
 What was baked and moves, goes or comes changes the light in the frame that shows it first, roughly;
 once everything stands still it is computed with more rays, on a thread of its own or, where time
-stands still between frames, within a frame. Nothing is changed in the world: its bake stays.
+stands still between frames, within a frame. What can move gets the light of its place
+(`object_lights.py`). Nothing is changed in the world: its bake stays.
 """
 
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -16,11 +18,12 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.relight.baked_rows import BakedRows, baked_rows, has_shape_of
 from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.object_lights import ObjectLights, can_be_lit
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.baked_light import BakedLight, ObjectLight
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
@@ -95,6 +98,8 @@ class Relighter:
         self._seen: WorldSnapshot | None = None
         self._changes: list[Change] = []
         self._painted: dict[int, Model] = {}
+        self._objects = ObjectLights()
+        self._object_light: Mapping[int, ObjectLight] = {}
         self._contents: tuple[SceneContents, BakedLight, SceneContents] | None = None
 
     def watch(self, snapshot: WorldSnapshot) -> None:
@@ -114,6 +119,7 @@ class Relighter:
         self._scene, self._light, self._seen, self._of = None, None, None, None
         self._places, self._refining, self._changes, self._painted = {}, None, [], {}
         self._preparing, self._rendered = None, 0
+        self._objects, self._object_light = ObjectLights(), {}
 
     def lit(
         self,
@@ -146,8 +152,13 @@ class Relighter:
             soon = self._rendered > (READY_FRAMES if lockstep else 1)
             if self.beforehand and soon and self._scene is None and self._preparing is None:
                 # Beside the frames, so that the first move finds everything ready.
-                self._preparing = self._background().submit(_scene_of, self._original, 1)
+                self._preparing = self._background().submit(
+                    _ready_scene, self._original, snapshot, self._objects
+                )
             self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
+            self._object_light = self._light_on_objects(snapshot, lockstep=lockstep)
+        if self._object_light:
+            snapshot = replace(snapshot, object_light=self._object_light)
         if self._light is None:
             return snapshot
         contents, light = snapshot.contents, self._light.light
@@ -182,6 +193,17 @@ class Relighter:
             self._light = _Relit(key, light, refined=rested, since_ns=since_ns)
         elif not self._light.refined:
             self._refine(self._light, snapshot, lockstep=lockstep)
+
+    def _light_on_objects(
+        self, snapshot: WorldSnapshot, *, lockstep: bool
+    ) -> Mapping[int, ObjectLight]:
+        """Return the light on what can move; in real time nothing waits for the scene's rays."""
+        preparing = self._preparing is not None and not self._preparing.done()
+        unprepared = self._scene is None and (self._preparing is None or preparing)
+        if (unprepared and not lockstep) or not any(map(can_be_lit, snapshot.contents.instances)):
+            return {}
+        scene, threads = self._prepared(), thread_count()
+        return self._objects.update(snapshot, scene, self._changes, threads=threads)
 
     def _refine(self, shown: _Relit, snapshot: WorldSnapshot, *, lockstep: bool) -> None:
         if lockstep:
@@ -283,10 +305,16 @@ def _scene_of(contents: SceneContents, threads: int) -> BakedScene:
     return BakedScene(contents.baked, contents, threads)
 
 
+def _ready_scene(
+    contents: SceneContents, snapshot: WorldSnapshot, objects: ObjectLights
+) -> BakedScene:
+    """Make a scene ready, and the light on what can move in it, which no frame waits for."""
+    scene = _scene_of(contents, 1)
+    objects.update(snapshot, scene, (), threads=1)
+    return scene
+
+
 def _key_of(changes: list[Change], painted: dict[int, Model]) -> _Key:
     """Return what tells sets of changes apart; it keeps the models, which are told by identity."""
     looks = tuple((id_, None, model) for id_, model in painted.items())
-    return looks + tuple(
-        (change.id, None if change.after is None else change.after.tobytes(), change.came)
-        for change in changes
-    )
+    return looks + tuple(change.key for change in changes)

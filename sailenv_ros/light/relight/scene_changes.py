@@ -37,6 +37,11 @@ class Change:
     after: NDArray[np.float64] | None
     came: tuple[Model, tuple[float, float, float]] | None = None
 
+    @property
+    def key(self) -> tuple[int, bytes | None, object]:
+        """Id, place and model: two changes of one bake with equal keys are one."""
+        return self.id, None if self.after is None else self.after.tobytes(), self.came
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PlacedInstance:

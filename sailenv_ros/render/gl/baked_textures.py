@@ -79,12 +79,12 @@ class BakedTextures:
                 texture.release()
 
     def _write(self, table: NDArray[np.float32]) -> None:
-        # Red, green and blue of an instance lie side by side, ROW_IDS instances in a row.
+        # Four terms a texel: an instance's lie side by side, ROW_IDS instances in a row.
         rows = len(table) // ROW_IDS
         if self._instances is None or self._instances.height != rows:
             if self._instances is not None:
                 self._instances.release()
-            self._instances = self._context.texture((3 * ROW_IDS, rows), 4, dtype="f4")
+            self._instances = self._context.texture((9 * ROW_IDS, rows), 4, dtype="f4")
             self._instances.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self._instances.write(np.ascontiguousarray(table))
         self._table = table

@@ -24,6 +24,10 @@ from sailenv_ros.types.snapshot import AdaptedExposure, WorldSnapshot
 
 __all__ = ["Light", "PostPass"]
 
+BESIDE_RAYS = 0.5
+"""Share of the occlusion's strength where rays have found the light of what can move: they know
+what stands near it, and leave to the picture what hides an object from itself."""
+
 
 class Light(NamedTuple):
     """Light of a picture's pixels.
@@ -81,10 +85,11 @@ class PostPass:
         if settings.occlusion_strength > 0.0:
             baked = np.zeros(65536, np.bool_)
             baked[snapshot.contents.instance_ids[still]] = True
+            known = BESIDE_RAYS if snapshot.object_light else 1.0
             shade = ambient_occlusion.ambient_visibility(
                 surface,
                 camera.intrinsics,
-                strength=settings.occlusion_strength,
+                strength=known * settings.occlusion_strength,
                 radius_m=settings.occlusion_radius_m,
                 baked=baked,
                 threads=self._threads,

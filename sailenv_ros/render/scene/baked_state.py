@@ -16,13 +16,17 @@ from sailenv_ros.render.scene.lightmap_compositing import (
     composite_lightmap,
     instance_light,
 )
+from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
-__all__ = ["ROW_IDS", "BakedState"]
+__all__ = ["ROW_IDS", "TERMS", "BakedState"]
 
 ROW_IDS = 256
 """The table of instances has a multiple of this number of rows."""
+
+TERMS = 12
+"""Of each colour of an instance's light; see `ObjectLight`."""
 
 
 class BakedState:
@@ -32,19 +36,20 @@ class BakedState:
     ----------
     composited : CompositedLight or None
         Replaced by another object when lights have changed.
-    instances : (R, 3, 4) float32
-        Red, green and blue of the light around each instance id: c0, cx, cy, cz. Replaced by
-        another array when something has moved.
+    instances : (R, 3, TERMS) float32
+        Red, green and blue of the light around each instance id, by terms; see `ObjectLight`.
+        Where that is not known, by the probes at the instance's middle. Replaced by another array
+        when something has moved.
     """
 
     def __init__(self) -> None:
         self._of: tuple[object, tuple[Light, ...], Environment] | None = None
         self._contents: SceneContents | None = None
-        self._placed: tuple[CompositedLight, SceneContents] | None = None
+        self._placed: tuple[CompositedLight, SceneContents, object] | None = None
         self._poses: NDArray[np.float64] | None = None
         self._middles = np.zeros((0, 4))
         self.composited: CompositedLight | None = None
-        self.instances: NDArray[np.float32] = np.zeros((ROW_IDS, 3, 4), np.float32)
+        self.instances: NDArray[np.float32] = np.zeros((ROW_IDS, 3, TERMS), np.float32)
 
     def update(self, snapshot: WorldSnapshot) -> CompositedLight | None:
         """Bring everything up to date; None where the scene has no baked light."""
@@ -65,13 +70,15 @@ class BakedState:
     def _place(self, snapshot: WorldSnapshot, composited: CompositedLight) -> None:
         """Look the light around each instance up, where anything has moved or changed."""
         contents, poses = snapshot.contents, snapshot.world_from_body
-        placed = (composited, contents)
+        placed = (composited, contents, snapshot.object_light)
         if self._placed == placed and np.array_equal(self._poses, poses):  # type: ignore[arg-type]
             return
         if self._placed is None or self._placed[1].instances is not contents.instances:
             self._middles = _middles(contents)
         self._placed, self._poses = placed, poses
         self.instances = self.around(snapshot, composited.probes)
+        for id_, light in snapshot.object_light.items():
+            self.instances[id_] = _sum_of(light, composited)
 
     def around(self, snapshot: WorldSnapshot, probes: NDArray[np.float32]) -> NDArray[np.float32]:
         """Look the light around each instance of the snapshot of `update` up; as `instances`."""
@@ -81,9 +88,18 @@ class BakedState:
         light = instance_light(probes, contents.baked.probes, points)
         ids = contents.instance_ids.astype(np.intp)
         rows = int(ids.max(initial=0)) // ROW_IDS + 1
-        table = np.zeros((rows * ROW_IDS, 3, 4), np.float32)
-        table[ids] = light.transpose(0, 2, 1)
+        table = np.zeros((rows * ROW_IDS, 3, TERMS), np.float32)
+        table[ids, :, :4] = light.transpose(0, 2, 1)
         return table
+
+
+def _sum_of(light: ObjectLight, composited: CompositedLight) -> NDArray[np.float32]:
+    """Return (3, TERMS): the layers of an object's light as bright as they are now."""
+    total = np.zeros((TERMS, 3), np.float32)
+    total[0] = composited.more
+    for number, bounced, direct in composited.powers:
+        total += light.bounced[number] * bounced + light.direct[number][:, None] * direct
+    return total.T
 
 
 def _middles(contents: SceneContents) -> NDArray[np.float64]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from sailenv_ros.types.lights import Environment, Light
 
 __all__ = [
     "CompositedLight",
+    "LayerPower",
     "LayerSum",
     "Term",
     "composite_lightmap",
@@ -42,6 +43,22 @@ class LayerSum:
     shown: NDArray[np.uint8]
 
 
+class LayerPower(NamedTuple):
+    """Factors of a layer.
+
+    Attributes
+    ----------
+    number : int
+        Of the layer in the bake.
+    bounced, direct : (3,) float32
+        By colour.
+    """
+
+    number: int
+    bounced: NDArray[np.float32]
+    direct: NDArray[np.float32]
+
+
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class CompositedLight:
     """The light of what stands still, and of the air around it.
@@ -53,6 +70,10 @@ class CompositedLight:
         of the main light that is not in shadow.
     probes : (Z, Y, X, 4, 3) float32
         As in `LightLayer`, without the main light's direct part.
+    powers : tuple of LayerPower
+        By which the same is to be summed of other light of these layers.
+    more : (3,) float32
+        Which is to be added to it.
     live : tuple of Light
         Lights that must be drawn as if there were no bake: they were added or moved.
     main_baked : bool
@@ -65,6 +86,8 @@ class CompositedLight:
 
     layers: LayerSum
     probes: NDArray[np.float32]
+    powers: tuple[LayerPower, ...]
+    more: NDArray[np.float32]
     live: tuple[Light, ...]
     main_baked: bool
     main_transmittance: float
@@ -129,20 +152,23 @@ def composite_lightmap(
     terms: list[Term] = [(surroundings.bounced, sky)]
     probes = surroundings.probe_bounced.astype(np.float32) * sky
     probes[..., 0, :] += more
+    powers = [LayerPower(0, sky, np.zeros(3, np.float32))]
     shown = np.full(surroundings.direct.shape, 255, np.uint8)
     main = main_light(lights)
     main_baked, main_transmittance = False, 1.0
     main_edges: SunEdges | None = None
     present = {light.name: light for light in lights}
     known = set()
-    for layer in baked.layers[1:]:
+    for number, layer in enumerate(baked.layers[1:], start=1):
         assert layer.light is not None
         light = present.get(layer.light.name)
         if light is None or not _stands_alike(light, layer.light):
             continue
         known.add(light.name)
         is_main = light is main and layer.visibility is not None
-        _add(terms, probes, layer, light, direct=not is_main)
+        if any(light.power):
+            powers.append(_power(number, light, direct=not is_main))
+            _add(terms, probes, layer, powers[-1])
         if is_main and layer.visibility is not None:
             shown, main_baked, main_transmittance = layer.visibility, True, layer.clear
             main_edges = layer.edges
@@ -150,6 +176,8 @@ def composite_lightmap(
     return CompositedLight(
         layers=LayerSum(terms, more, shown),
         probes=probes,
+        powers=tuple(powers),
+        more=more,
         live=live,
         main_baked=main_baked,
         main_transmittance=main_transmittance,
@@ -174,10 +202,12 @@ def light_alone(baked: BakedLight, light: Light, *, is_main: bool) -> Composited
         if is_main and layer.visibility is not None:
             shown, main_baked = layer.visibility, True
         terms: list[Term] = []
-        _add(terms, probes, layer, light, direct=not main_baked)
+        _add(terms, probes, layer, _power(0, light, direct=not main_baked))
         return CompositedLight(
             layers=LayerSum(terms, np.zeros(3, np.float32), shown),
             probes=probes,
+            powers=(),
+            more=np.zeros(3, np.float32),
             live=(),
             main_baked=main_baked,
             main_transmittance=layer.clear if main_baked else 1.0,
@@ -186,6 +216,8 @@ def light_alone(baked: BakedLight, light: Light, *, is_main: bool) -> Composited
     return CompositedLight(
         layers=LayerSum([dark], np.zeros(3, np.float32), np.zeros((2, 2), np.uint8)),
         probes=probes,
+        powers=(),
+        more=np.zeros(3, np.float32),
         live=() if is_main else (light,),
         main_baked=False,
         main_transmittance=1.0,
@@ -221,23 +253,20 @@ def instance_light(
     return result
 
 
-def _add(
-    terms: list[Term],
-    probes: NDArray[np.float32],
-    layer: LightLayer,
-    light: Light,
-    *,
-    direct: bool,
-) -> None:
+def _power(number: int, light: Light, *, direct: bool) -> LayerPower:
     power = np.array(light.power, np.float32)
     bounced = power * np.float32(light.indirect_multiplier)
-    if not power.any():
-        return
-    terms.append((layer.bounced, bounced))
-    probes += layer.probe_bounced * bounced
-    if direct:
-        terms.append((layer.direct, power))
-        probes += layer.probe_direct * power
+    return LayerPower(number, bounced, power if direct else np.zeros(3, np.float32))
+
+
+def _add(
+    terms: list[Term], probes: NDArray[np.float32], layer: LightLayer, power: LayerPower
+) -> None:
+    terms.append((layer.bounced, power.bounced))
+    probes += layer.probe_bounced * power.bounced
+    if power.direct.any():
+        terms.append((layer.direct, power.direct))
+        probes += layer.probe_direct * power.direct
 
 
 def _stands_alike(light: Light, baked: Light) -> bool:

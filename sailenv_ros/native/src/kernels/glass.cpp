@@ -59,13 +59,9 @@ Base8 base_colour(const Part& part, const Planes& p, const Steps& steps, f8 over
 }
 
 // Irradiance / pi on a surface.
-Vec3x8 light_around(const Light& light, int32_t id, Vec3x8 normal) {
+Vec3x8 light_around(const Light& light, int32_t id, Vec3x8 normal, Vec3x8 point) {
     if (!light.baked) return light_of_sky(light, normal.z);
-    const float* p = light.instance_light + 12 * static_cast<int64_t>(id);
-    const auto probed = [&](const float* q) {
-        return max(q[0] + q[1] * normal.x + q[2] * normal.y + q[3] * normal.z, 0.0f);
-    };
-    return {probed(p), probed(p + 4), probed(p + 8)};
+    return light_of_instances(light, splat(id), normal, point);
 }
 
 // Radiance that eight points of an instance mirror.
@@ -109,9 +105,9 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     const f8 g2 = grazing * grazing;
     const f8 fresnel = 0.04f + 0.96f * (g2 * g2 * grazing);
     const f8 rest = 1.0f - fresnel;
-    const Vec3x8 mirrored =
-        mirrored_light(light, part, begin + ray * depth, 2.0f * facing * normal - view);
-    const Vec3x8 around = light_around(light, part.id, normal);
+    const Vec3x8 point = begin + ray * depth;
+    const Vec3x8 mirrored = mirrored_light(light, part, point, 2.0f * facing * normal - view);
+    const Vec3x8 around = light_around(light, part.id, normal, point);
     const Vec3x8 added =
         fresnel * mirrored + rest * base.alpha * colour * around + colour * part.emission;
     // What comes through takes the hue of the material, the more the denser it is.

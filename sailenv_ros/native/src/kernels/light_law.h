@@ -76,6 +76,17 @@ LIGHT_LAW Real3 sky_irradiance(Real up, vec3 zenith, vec3 horizon, vec3 ground) 
     return mix(ground, mix(horizon, dome, max(up, 0.0f)), 0.5f + 0.5f * up);
 }
 
+// Irradiance / pi on a surface by twelve terms: spherical harmonics of bands 0, 1 and 2 of its
+// normal (Ramamoorthi and Hanrahan 2001), and how it changes from place to place.
+LIGHT_LAW Real irradiance_of_terms(Real t[12], Real3 normal, Real3 point) {
+    Real even = t[0] + t[1] * normal.x + t[2] * normal.y + t[3] * normal.z;
+    Real mixed =
+        t[4] * (normal.x * normal.y) + t[5] * (normal.y * normal.z) + t[6] * (normal.z * normal.x);
+    Real squares = t[7] * (normal.x * normal.x - normal.y * normal.y) +
+                   t[8] * (3.0f * normal.z * normal.z - 1.0f);
+    return even + mixed + squares + t[9] * point.x + t[10] * point.y + t[11] * point.z;
+}
+
 #undef LIGHT_LAW
 #undef Real
 #undef Real3

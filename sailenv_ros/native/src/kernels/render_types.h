@@ -97,6 +97,8 @@ struct ReflectionPoint {
     float light[4];  // irradiance / pi there: c0, cx, cy, cz; luminance
 };
 
+constexpr int32_t INSTANCE_TERMS = 36;  // of an instance in `instance_light`
+
 // Everything that lights a picture; all vectors in the world frame.
 struct Light {
     vec3 main_colour, main_towards;
@@ -118,7 +120,8 @@ struct Light {
     int32_t reflecting;         // 1: there is a reflection map
     const LayerSum* light_map;  // (height, width): irradiance / pi, share of main light
     int32_t light_map_width, light_map_height;
-    const float* instance_light;  // (ids, 3, 4): c0, cx, cy, cz of red, green, blue
+    const float*
+        instance_light;  // (ids, 3, 12): terms of red, green, blue, see irradiance_of_terms
     float main_baked, main_clear;
     const int32_t* edge_index;   // (height, width) of the light map: number of a block, or -1; null
     const uint8_t* edge_blocks;  // (blocks, 6, 6): share of main light, see SunEdges

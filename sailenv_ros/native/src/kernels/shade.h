@@ -50,6 +50,10 @@ LANES_INLINE Vec3x8 analytic_sky(const Light& l, f8 up) {
     return sky_radiance(up, l.sky_zenith, l.sky_horizon, l.sky_ground);
 }
 
+// Irradiance / pi that instances know of themselves, on surfaces that are turned along `normal` and
+// lie at `point`; unit vectors and points in the world frame.
+Vec3x8 light_of_instances(const Light& light, i8 ids, Vec3x8 normal, Vec3x8 point);
+
 // What shiny surfaces mirror of a room, as `point` says for each; see shaders/reflections.glsl.
 // Points and directions in the world frame.
 Vec3x8 mirrored_room(const Light& light, i8 point, Vec3x8 at, Vec3x8 direction, f8 roughness);

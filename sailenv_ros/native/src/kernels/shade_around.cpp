@@ -73,6 +73,26 @@ f8 edge_shares(const Light& light, const int32_t* at, const float* across, const
 
 }  // namespace
 
+Vec3x8 light_of_instances(const Light& light, i8 ids, Vec3x8 normal, Vec3x8 point) {
+    constexpr int32_t TERMS = INSTANCE_TERMS / 3;
+    const float* rows[8];
+    for (int k = 0; k < 8; k++) {
+        rows[k] = light.instance_light + INSTANCE_TERMS * static_cast<int64_t>(ids[k]);
+    }
+    const bool alike = !any(ids != ids[0]);
+    f8 found[3];
+    for (int c = 0; c < 3; c++) {
+        f8 terms[TERMS];
+        for (int j = 0; j < TERMS; j++) {
+            const int32_t at = TERMS * c + j;
+            terms[j] = splat(rows[0][at]);
+            for (int k = 1; k < 8 && !alike; k++) terms[j][k] = rows[k][at];
+        }
+        found[c] = max8(irradiance_of_terms(terms, normal, point), splat(0.0f));
+    }
+    return {found[0], found[1], found[2]};
+}
+
 void light_from_bake(const Shading& s, Chunk& c) {
     const Light& light = *s.light;
     const int32_t width = light.light_map_width, height = light.light_map_height;
@@ -105,16 +125,9 @@ void light_from_bake(const Shading& s, Chunk& c) {
         const i8 charted = load(c.light_u + i) > 0.0f;
         const i8 there = ~load(c.empty + i);
         if (any(~charted & there)) {
-            alignas(32) float probed[3][8];
-            for (int k = 0; k < 8; k++) {
-                const float* p = light.instance_light + 12 * static_cast<int64_t>(c.id[i + k]);
-                for (int j = 0; j < 3; j++, p += 4) {
-                    probed[j][k] = p[0] + p[1] * c.normal.x[i + k] + p[2] * c.normal.y[i + k] +
-                                   p[3] * c.normal.z[i + k];
-                }
-            }
-            const Vec3x8 found = {load(probed[0]), load(probed[1]), load(probed[2])};
-            around = where(charted, around, max(found, 0.0f));
+            const Vec3x8 found =
+                light_of_instances(light, load(c.id + i), c.normal.at(i), c.point.at(i));
+            around = where(charted, around, found);
         }
         c.around.set(i, around);
         const f8 facing = dot(c.normal.at(i), light.main_towards);

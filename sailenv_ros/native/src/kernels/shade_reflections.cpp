@@ -114,8 +114,8 @@ Vec3x8 mirrored_room(const Light& light, i8 point, Vec3x8 at, Vec3x8 d, f8 rough
     const f8 scale = 1.0f / max8(abs8(to.x) + abs8(to.y) + abs8(to.z), splat(1e-20f));
     f8 nx = to.x * scale, ny = to.y * scale;
     const f8 fold = max8(-to.z * scale, splat(0.0f));
-    nx = nx >= 0.0f ? nx - fold : nx + fold;
-    ny = ny >= 0.0f ? ny - fold : ny + fold;
+    nx = nx >= 0.0f ? nx + fold : nx - fold;
+    ny = ny >= 0.0f ? ny + fold : ny - fold;
     const float edge = static_cast<float>(light.reflection_edge);
     const float half = 0.5f * light.reflection_scale * edge, middle = 0.5f * edge - 0.5f;
     const f8 u = clamp8(nx * half + middle, 0.0f, edge - 1.001f);

@@ -6,24 +6,16 @@ layout(location = 0, index = 1) out vec4 out_through;  // share of what lies beh
 #include "draw.glsl"
 #include "picture.glsl"
 #include "textures.glsl"
+#include "instance_light.glsl"
 #include "reflections.glsl"
-
-#ifdef BAKED
-uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx, cy, cz
-#endif
 
 in vec3 optical_normal;
 in vec2 uv;
 
 // Irradiance / pi on a surface.
-vec3 light_around(vec3 world_normal) {
+vec3 light_around(vec3 world_normal, vec3 point) {
 #ifdef BAKED
-    int id = int(INSTANCE_ID + 0.5);
-    ivec2 row = ivec2((id & 255) * 3, id >> 8);
-    vec4 facing_to = vec4(1.0, world_normal);
-    return max(vec3(dot(texelFetch(instance_light, row, 0), facing_to),
-                    dot(texelFetch(instance_light, row + ivec2(1, 0), 0), facing_to),
-                    dot(texelFetch(instance_light, row + ivec2(2, 0), 0), facing_to)), 0.0);
+    return light_of_instance(int(INSTANCE_ID + 0.5), world_normal, world_from_optical * point + eye);
 #else
     return light_of_sky(world_normal);
 #endif
@@ -54,7 +46,7 @@ void main() {
     vec3 world_normal = world_from_optical * normal;
     vec3 mirrored = world_from_optical * reflect(-view, normal);
     vec3 added = fresnel * mirrored_light(ray / gl_FragCoord.w, mirrored, MATERIAL_FINISH.x);
-    added += (1.0 - fresnel) * base.a * base.rgb * light_around(world_normal);
+    added += (1.0 - fresnel) * base.a * base.rgb * light_around(world_normal, ray / gl_FragCoord.w);
     added += base.rgb * (MATERIAL_FINISH.w * 16.0);
     // The share of light from around stays that of what lies behind.
     out_added = vec4(finished(added, vec3(0.0)).rgb, 0.0);

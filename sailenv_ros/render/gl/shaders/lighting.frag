@@ -22,13 +22,13 @@ uniform float outside_radiance;    // of its white
 #ifdef BAKED
 uniform sampler2D light_at;        // place in the light map, 0 where there is none
 uniform sampler2D light_map;       // irradiance / pi; share of the main light that arrives
-uniform sampler2D instance_light;  // red, green, blue of each instance: c0, cx, cy, cz
 uniform sampler2DShadow static_shadow_map;  // of what stands still; the other is of what moves
 uniform float main_transmittance;   // of glass, for what is not in the light map
 uniform float main_baked;          // 1 if the light map knows the main light's shadows
 uniform isampler2D edge_index;     // of the light map's texels: number of a block, or -1
 uniform sampler2D edge_blocks;     // 6 by 6 shares of main light each, 128 blocks in a row
 #endif
+#include "instance_light.glsl"
 #include "reflections.glsl"
 #include "octahedral.glsl"
 
@@ -135,13 +135,10 @@ void main() {
     vec2 place = texelFetch(light_at, pixel, 0).xy;
     vec4 mapped = textureLod(light_map, place, 0.0);
     int id = int(texelFetch(surface, pixel, 0).y + 0.5);
-    ivec2 row = ivec2((id & 255) * 3, id >> 8);
-    vec4 facing_to = vec4(1.0, world_normal);
-    vec3 probed = vec3(dot(texelFetch(instance_light, row, 0), facing_to),
-                       dot(texelFetch(instance_light, row + ivec2(1, 0), 0), facing_to),
-                       dot(texelFetch(instance_light, row + ivec2(2, 0), 0), facing_to));
+    vec3 place_in_world = world_from_optical * point + eye;
+    vec3 probed = light_of_instance(id, world_normal, place_in_world);
     float charted = place.x > 0.0 ? 1.0 : 0.0;
-    vec3 around = mix(max(probed, vec3(0.0)), mapped.rgb, charted);
+    vec3 around = mix(probed, mapped.rgb, charted);
     float past_what_stands = main_transmittance * texture(static_shadow_map, in_shadow);
     float known = edge_share(place, mapped.a);
     main_arrives *= mix(past_what_stands, known, charted * main_baked);
@@ -155,7 +152,7 @@ void main() {
 #endif
 #ifdef REFLECTIONS
     int seen_from = reflection_point(id);
-    vec3 room = mirrored_room(seen_from, world_from_optical * point + eye, mirrored, roughness);
+    vec3 room = mirrored_room(seen_from, place_in_world, mirrored, roughness);
     // Where less light arrives than where the room was seen from, less of it is seen as well.
     float in_the_open = dot(room_light[seen_from], vec4(1.0, world_normal));
     room *= clamp(luminance(around) / max(in_the_open, 1e-4), 0.0, 1.0);

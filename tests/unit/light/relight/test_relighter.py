@@ -21,6 +21,7 @@ from tests.support.tiny_scenes import Thing, box_mesh, model_of
 
 FLOOR = Thing(ground(4.0))
 BOX = model_of(box_mesh(0.5))
+CUP = model_of(box_mesh(0.1))
 LAMP = Light(name="lamp", type="point", position_m=(0.0, 0.0, 2.0))
 HOME = Pose((0.5, 0.0, 0.251))
 SECOND_NS = 1_000_000_000
@@ -191,3 +192,51 @@ def test_alone_nothing_is_prepared_beside_the_frames(baked: WorldSnapshot) -> No
         assert np.array_equal(one.direct, two.direct)
         assert np.array_equal(one.bounced, two.bounced)
     other.close()
+
+
+@pytest.fixture(scope="module")
+def with_a_cup(baked: WorldSnapshot) -> WorldSnapshot:
+    """The same, and a small box that can move."""
+    whole = still([FLOOR, Thing(BOX, HOME), Thing(CUP, Pose((-0.5, 0.0, 0.06)))], lights=(LAMP,))
+    *others, cup = whole.contents.instances
+    moving = (*others, replace(cup, instance=replace(cup.instance, static=False)))
+    contents = replace(whole.contents, instances=moving, baked=light_of(baked))
+    return replace(whole, contents=contents)
+
+
+def test_in_lockstep_the_first_picture_has_the_light_on_what_can_move(
+    with_a_cup: WorldSnapshot,
+) -> None:
+    """Frames without a picture do no work; while nothing changes the mapping is the same."""
+    relighter = Relighter()
+    assert relighter.lit(with_a_cup, wanted=False, lockstep=True) is with_a_cup
+    first = relighter.lit(with_a_cup, wanted=True, lockstep=True)
+    assert first.object_light.keys() == {3}
+    assert first.contents is with_a_cup.contents
+    again = relighter.lit(replace(with_a_cup, sim_time_ns=5), wanted=True, lockstep=True)
+    assert again.object_light is first.object_light
+
+
+def test_furniture_beside_it_changes_the_light_on_what_can_move(with_a_cup: WorldSnapshot) -> None:
+    """A box that was put between lamp and cup takes its light."""
+    relighter = Relighter()
+    open_ = relighter.lit(with_a_cup, wanted=True, lockstep=True).object_light[3]
+    poses = with_a_cup.world_from_body.copy()
+    poses[1, :3, 3] = -0.5, 0.0, 1.0
+    between = replace(with_a_cup, world_from_body=poses)
+    shaded = relighter.lit(between, wanted=True, lockstep=True).object_light[3]
+    assert np.abs(open_.direct[1]).max() > 0.0
+    assert np.abs(shaded.direct[1]).max() == 0.0
+
+
+def test_in_real_time_no_picture_waits_for_the_light_on_what_can_move(
+    with_a_cup: WorldSnapshot,
+) -> None:
+    """It is worked out beside, and shown when it is there."""
+    relighter = Relighter()
+    assert not relighter.lit(with_a_cup, wanted=True, lockstep=False).object_light
+    relighter.lit(with_a_cup, wanted=True, lockstep=False)
+    assert relighter._preparing is not None
+    relighter._preparing.result(timeout=60.0)
+    assert relighter.lit(with_a_cup, wanted=True, lockstep=False).object_light.keys() == {3}
+    relighter.close()

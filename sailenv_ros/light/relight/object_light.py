@@ -1,0 +1,233 @@
+"""Light on what can move, where it stands: rays from points of its surface, fitted by few terms.
+
+A probe in the air knows neither what an object stands on nor what stands beside it, nor that the
+sides of something large are lit unlike. So rays from the object's own surface gather what arrives
+there from everything around and straight from each lamp, and a fit by normal and place says it for
+all of the surface. From `BakedScene` and objects to `ObjectLight`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.light_shapes import light_record
+from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
+from sailenv_ros.light.bake.settings import INSIDE_SHARE
+from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
+from sailenv_ros.light.relight.quality import Quality
+from sailenv_ros.light.relight.ray_world import RayWorld, ray_world
+from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance
+from sailenv_ros.native.ray_types import RAY_LIGHT
+from sailenv_ros.native.relight_kernels import (
+    direct_light_delta,
+    gather_change,
+    light_of_probes,
+)
+from sailenv_ros.rays.model_triangles import triangles_of
+from sailenv_ros.types.baked_light import ObjectLight
+from sailenv_ros.types.model import Model
+
+__all__ = ["ObjectLighting", "PlacedObject", "SurfacePoints"]
+
+Floats = NDArray[np.float32]
+Doubles = NDArray[np.float64]
+
+WHOLE, INSIDE = 2, 3
+"""States of points: all of their light is wanted; they lie inside of something."""
+
+TERMS = 12
+"""Of `irradiance_of_terms` in light_law.h."""
+
+STIFFNESS = np.array([0.0] + 3 * [0.01] + 5 * [0.04] + 3 * [0.04])
+"""How strongly each term is held back where points do not tell it, as a share of their number."""
+
+HIDDEN_M = 0.1
+"""Points that see nothing farther than a few centimetres are seldom seen, and count less: by the
+harmonic mean of the distances of what they see over this [m]."""
+
+LEAST_WEIGHT = 0.02
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class PlacedObject:
+    """An object that can move, where it is.
+
+    Attributes
+    ----------
+    id : int
+        Of the instance.
+    model : Model
+    scale : (3,) tuple of float
+    world_from_body : (4, 4) float64
+    """
+
+    id: int
+    model: Model
+    scale: tuple[float, float, float]
+    world_from_body: NDArray[np.float64]
+
+
+class SurfacePoints:
+    """Points on models' surfaces, chosen once for each model and number."""
+
+    def __init__(self) -> None:
+        self._made: dict[tuple[int, int], tuple[Model, Doubles, Doubles]] = {}
+
+    def of(self, model: Model, count: int) -> tuple[Doubles, Doubles]:
+        """Return (P, 3) positions and unit normals, in the model's own frame."""
+        made = self._made.get((id(model), count))
+        if made is None:
+            made = self._made[id(model), count] = model, *_surface_points(model, count)
+        return made[1], made[2]
+
+
+class ObjectLighting:
+    """A scene as rays from objects meet it, with the changes of what was baked.
+
+    Parameters
+    ----------
+    scene : BakedScene
+    changes : sequence of Change
+        What was baked and stands elsewhere now.
+    points : SurfacePoints
+    """
+
+    def __init__(self, scene: BakedScene, changes: Sequence[Change], points: SurfacePoints) -> None:
+        self._scene, self._points = scene, points
+        layers = scene.baked.layers
+        self._lights = [layer.light for layer in layers]
+        self._area = [n for n, one in enumerate(self._lights) if one and one.type == "area"]
+        probes = [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in layers]
+        self._probes = np.ascontiguousarray(np.concatenate(probes, axis=-1))
+        self._world = ray_world(scene, changes, scene.sent, scene.sent, self._radiance_of_change)
+
+    def light_on(
+        self, thing: PlacedObject, near: Sequence[PlacedObject], quality: Quality
+    ) -> ObjectLight:
+        """Return the light on an object.
+
+        Parameters
+        ----------
+        thing : PlacedObject
+        near : sequence of PlacedObject
+            What else can move and stands near enough to count.
+        quality : Quality
+        """
+        world = self._world.with_more([self._placed(one) for one in near])
+        positions, normals = _placed_points(
+            thing, *self._points.of(thing.model, quality.object_points)
+        )
+        bounced, direct, weights = self._gathered(world, positions, normals, quality)
+        fit = _fit(positions, normals, weights)
+        by_layer = (fit @ bounced).reshape(TERMS, len(self._lights), 3).transpose(1, 0, 2)
+        return ObjectLight(
+            bounced=np.ascontiguousarray(by_layer, np.float32),
+            direct=np.ascontiguousarray((fit @ direct).T, np.float32),
+        )
+
+    def _placed(self, thing: PlacedObject) -> PlacedInstance:
+        pose = thing.world_from_body
+        shape = self._scene.shape_of(thing.model, thing.scale, None)
+        radiance = self._radiance(thing.model, thing.scale, pose)
+        return PlacedInstance(shape, pose, None, radiance, True, True)
+
+    def _radiance_of_change(self, change: Change) -> Floats | None:
+        if change.came is None or change.after is None:
+            return None
+        return self._radiance(*change.came, change.after)
+
+    def _radiance(
+        self, model: Model, scale: tuple[float, float, float], pose: NDArray[np.float64]
+    ) -> Floats:
+        """Return (C,) float32: what an object sends out on average, by probes and its colour."""
+        grid = self._scene.baked.probes
+        middle = pose[:3, :3] @ (np.asarray(model.middle) * scale) + pose[:3, 3]
+        light = light_of_probes(
+            self._probes, grid.origin_m, grid.spacing_m,
+            middle[None].astype(np.float32), np.zeros((1, 3), np.float32), threads=1,
+        )  # fmt: skip
+        sent = np.maximum(light[0], 0.0).reshape(-1, 3) * albedo_of_model(model)
+        return np.ascontiguousarray(sent.reshape(-1), np.float32)
+
+    def _gathered(
+        self, world: RayWorld, positions: Floats, normals: Floats, quality: Quality
+    ) -> tuple[Doubles, Doubles, Doubles]:
+        """Return (P, 3 L) bounced, (P, L) direct irradiance / pi, and (P,) how much each counts."""
+        area = [light_record(light) for light in self._lights if light and light.type == "area"]
+        count = len(positions)
+        found, bounced, of_areas, nearness = gather_change(
+            world.record, positions, normals, np.full(count, WHOLE, np.uint8),
+            low_discrepancy_points(quality.object_rays),
+            np.concatenate([np.zeros(0, RAY_LIGHT), *area]),
+            low_discrepancy_points(quality.area_rays), 0.0, inside_share=INSIDE_SHARE, threads=1,
+        )  # fmt: skip
+        direct = np.zeros((count, len(self._lights)))
+        direct[:, self._area] = of_areas
+        everything = np.full(len(self._scene.sent), WHOLE, np.uint8)
+        for number, light in enumerate(self._lights):
+            if light is None or light.type in ("area", "directional"):
+                continue
+            state, value, _ = direct_light_delta(
+                world.record, light_record(light), positions, normals, np.zeros(count, np.int32),
+                everything, low_discrepancy_points(quality.light_rays), threads=1,
+            )  # fmt: skip
+            direct[:, number] = np.where(state > 0, value, 0.0)
+        weights = np.clip(nearness.astype(np.float64) / HIDDEN_M, LEAST_WEIGHT, 1.0)
+        return bounced.astype(np.float64), direct, np.where(found == INSIDE, 1e-4, weights)
+
+
+def _placed_points(
+    thing: PlacedObject, positions: Doubles, normals: Doubles
+) -> tuple[Floats, Floats]:
+    """Return (P, 3) positions [m] and unit normals of points of an object, world frame."""
+    scale, pose = np.asarray(thing.scale), thing.world_from_body
+    turned = (normals / scale) @ pose[:3, :3].T
+    turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-12)
+    placed = (positions * scale) @ pose[:3, :3].T + pose[:3, 3]
+    return np.ascontiguousarray(placed, np.float32), np.ascontiguousarray(turned, np.float32)
+
+
+def _surface_points(model: Model, count: int) -> tuple[Doubles, Doubles]:
+    """Return (P, 3) positions and normals of points spread over a model's area, its own frame."""
+    every = triangles_of(model)
+    solid = every.passes == 0.0
+    chosen = solid if solid.any() else np.ones(len(solid), bool)
+    corners = every.corners[chosen].astype(np.float64)
+    normals = every.normals[chosen].astype(np.float64)
+    areas = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    ends = np.cumsum(areas)
+    at = (np.arange(count) + 0.5) / count * ends[-1]
+    triangle = np.minimum(np.searchsorted(ends, at), len(ends) - 1)
+    u, v = low_discrepancy_points(count).astype(np.float64).T
+    root = np.sqrt(v)
+    # The first number of the pattern rises with the index: another one chooses within triangles.
+    u = np.modf(u * 0.618034 * count)[0]
+    weights = np.stack([1.0 - root, root * (1.0 - u), root * u], axis=1)
+    points = np.einsum("pc,pcx->px", weights, corners[triangle])
+    turned = np.einsum("pc,pcx->px", weights, normals[triangle])
+    turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-12)
+    return points, turned
+
+
+def _fit(positions: Floats, normals: Floats, weights: Doubles) -> Doubles:
+    """Return (TERMS, P): from values at points to terms, by weighted least squares."""
+    n, p = normals.astype(np.float64), positions.astype(np.float64)
+    middle = (weights[:, None] * p).sum(axis=0) / weights.sum()
+    reach = max(float(np.linalg.norm(p - middle, axis=1).max()), 1e-6)
+    x, y, z = n.T
+    basis = np.stack(
+        [np.ones(len(n)), x, y, z, x * y, y * z, z * x, x * x - y * y, 3.0 * z * z - 1.0], axis=1
+    )
+    basis = np.concatenate([basis, (p - middle) / reach], axis=1)
+    total = weights.sum()
+    normal = (basis * weights[:, None]).T @ basis + np.diag(STIFFNESS * total)
+    fit = np.linalg.solve(normal, (basis * weights[:, None]).T)
+    fit[9:] /= reach
+    fit[0] -= middle @ fit[9:]
+    return fit

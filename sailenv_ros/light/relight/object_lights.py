@@ -1,0 +1,168 @@
+"""Keeps the light on what can move while a scene runs. From snapshots to `ObjectLight` by id.
+
+Light is a function of what stands where: of an object's own place, of what stands near, and of the
+changes of what was baked. It is computed once for each place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
+from sailenv_ros.light.relight.quality import FINE, QUICK
+from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.types.baked_light import ObjectLight
+from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot
+
+__all__ = ["ObjectLights", "can_be_lit", "movable_objects", "with_object_light"]
+
+STEP_M, STEP = 1e-3, 1.0 / 512.0
+"""Places are rounded to these, along and about axes: what comes to rest creeps for seconds."""
+
+NEAR_M = 0.25
+"""Things whose balls are farther apart neither shade nor light each other [m]."""
+
+MOST_ELSEWHERE = 12
+"""Of the objects that stand elsewhere than in their epoch's first snapshot so many get light of
+their own in each snapshot, those with the lowest ids; others have that of the probes."""
+
+
+def can_be_lit(drawn: DrawnInstance) -> bool:
+    """Return whether something can move, and keeps its shape."""
+    moves = not drawn.is_baked and not drawn.deforms and drawn.outside is None
+    return moves and drawn.model.triangle_count > 0
+
+
+def movable_objects(snapshot: WorldSnapshot) -> list[PlacedObject]:
+    """Return what can move and keeps its shape."""
+    return [
+        PlacedObject(
+            id=drawn.instance.id, model=drawn.model, scale=drawn.scale, world_from_body=pose
+        )
+        for drawn, pose in zip(snapshot.contents.instances, snapshot.world_from_body, strict=True)
+        if can_be_lit(drawn)
+    ]
+
+
+def with_object_light(snapshot: WorldSnapshot, scene: BakedScene, threads: int) -> WorldSnapshot:
+    """Return a snapshot of a scene that is as it was baked, with the light on all that can move."""
+    light = ObjectLights().update(snapshot, scene, (), threads=threads)
+    return replace(snapshot, object_light=light)
+
+
+class ObjectLights:
+    """The light on what can move in one scene."""
+
+    def __init__(self) -> None:
+        self._epoch = -1
+        self._first: dict[int, bytes] = {}
+        self._of: tuple[object, ...] = ()
+        self._seen: tuple[object, NDArray[np.float64]] = (None, np.zeros((0, 4, 4)))
+        self._points = SurfacePoints()
+        self._lighting: ObjectLighting | None = None
+        self._known: dict[int, tuple[tuple[object, ...], ObjectLight]] = {}
+        self._light: Mapping[int, ObjectLight] = {}
+
+    def update(
+        self,
+        snapshot: WorldSnapshot,
+        scene: BakedScene,
+        changes: Sequence[Change],
+        *,
+        threads: int,
+    ) -> Mapping[int, ObjectLight]:
+        """Return the light on objects, by instance id; the same mapping if nothing has changed.
+
+        Parameters
+        ----------
+        snapshot : WorldSnapshot
+        scene : BakedScene
+            Of its bake.
+        changes : sequence of Change
+            What was baked and stands elsewhere.
+        threads : int
+            The result does not depend on it.
+        """
+        of = scene, *(change.key for change in changes)
+        instances, poses = snapshot.contents.instances, snapshot.world_from_body
+        if of == self._of and instances is self._seen[0] and np.array_equal(poses, self._seen[1]):
+            return self._light
+        self._seen = instances, poses
+        things = [_steady(thing) for thing in movable_objects(snapshot)]
+        if snapshot.contents.epoch != self._epoch:
+            self._epoch = snapshot.contents.epoch
+            self._first = {thing.id: thing.world_from_body.tobytes() for thing in things}
+        if self._lighting is None or of != self._of:
+            self._lighting = ObjectLighting(scene, changes, self._points)
+            self._of, self._known = of, {}
+        chosen = self._chosen(things)
+        near = _near(things)
+        known = {}
+        asked = []
+        for place in chosen:
+            thing = things[place]
+            around = [things[other] for other in near[place]]
+            quality = QUICK if self._is_elsewhere(thing) else FINE
+            key = quality, _place_of(thing), *(_place_of(other) for other in around)
+            before = self._known.get(thing.id)
+            if before is not None and before[0] == key:
+                known[thing.id] = before
+            else:
+                asked.append((thing, around, quality, key))
+        if not asked and len(known) == len(self._known):
+            return self._light
+        lighting = self._lighting
+
+        with ThreadPoolExecutor(max(threads, 1)) as pool:
+            found = pool.map(lambda one: lighting.light_on(*one[:3]), asked)
+            for (thing, *_, key), light in zip(asked, found, strict=True):
+                known[thing.id] = key, light
+        self._known = known
+        self._light = {id_: light for id_, (_, light) in known.items()}
+        return self._light
+
+    def _chosen(self, things: list[PlacedObject]) -> list[int]:
+        """Return the places of those that get light of their own."""
+        chosen, elsewhere = [], 0
+        for place, thing in enumerate(things):
+            elsewhere += self._is_elsewhere(thing)
+            if elsewhere <= MOST_ELSEWHERE or not self._is_elsewhere(thing):
+                chosen.append(place)
+        return chosen
+
+    def _is_elsewhere(self, thing: PlacedObject) -> bool:
+        return self._first.get(thing.id) != thing.world_from_body.tobytes()
+
+
+def _steady(thing: PlacedObject) -> PlacedObject:
+    """Return an object at a place that small motions do not change."""
+    pose = np.round(thing.world_from_body / STEP) * STEP
+    pose[:3, 3] = np.round(thing.world_from_body[:3, 3] / STEP_M) * STEP_M
+    # No zero has a sign.
+    return replace(thing, world_from_body=pose + 0.0)
+
+
+def _place_of(thing: PlacedObject) -> tuple[object, ...]:
+    return thing.id, thing.model, thing.scale, thing.world_from_body.tobytes()
+
+
+def _near(things: list[PlacedObject]) -> list[list[int]]:
+    """Return which others stand near each."""
+    if not things:
+        return []
+    centres, radii = np.empty((len(things), 3)), np.empty(len(things))
+    for row, thing in enumerate(things):
+        bounds = thing.model.bounds() * np.asarray(thing.scale)
+        centres[row] = thing.world_from_body[:3, :3] @ bounds.mean(axis=0)
+        radii[row] = np.linalg.norm(np.ptp(bounds, axis=0)) / 2.0
+    centres += np.array([thing.world_from_body[:3, 3] for thing in things])
+    apart = np.linalg.norm(centres[:, None] - centres, axis=2)
+    close = apart < radii[:, None] + radii + NEAR_M
+    np.fill_diagonal(close, False)
+    return [np.flatnonzero(row).tolist() for row in close]

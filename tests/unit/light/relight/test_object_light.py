@@ -1,0 +1,149 @@
+"""Light on what can move, against arithmetic, and when it is worked out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.pipeline import bake
+from sailenv_ros.light.relight import object_lights as module
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
+from sailenv_ros.light.relight.object_lights import ObjectLights, movable_objects
+from sailenv_ros.light.relight.quality import FINE
+from sailenv_ros.types.baked_light import ObjectLight
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.model import Model
+from sailenv_ros.types.snapshot import WorldSnapshot
+from tests.support.bake_scenes import COARSE, DARK, ground
+from tests.support.tiny_scenes import Thing, box_mesh, model_of, snapshot_of
+
+BLACK = (0.0, 0.0, 0.0, 1.0)
+FLOOR = ground(2.0, base_colour=BLACK)
+BOX = model_of(box_mesh(0.2), base_colour=BLACK)
+WHITE_SKY = Environment(background="colour", background_colour=(0.8, 0.8, 0.8))
+LAMP = Light(name="lamp", type="point", position_m=(0.0, 0.0, 2.0))
+IN_THE_AIR = Pose((0.0, 0.0, 1.0))
+
+
+def room(
+    *things: tuple[Model, Pose], environment: Environment = DARK, lights: tuple[Light, ...] = ()
+) -> WorldSnapshot:
+    """A small dark floor that stands still, with its light, and things that can move."""
+    every = [Thing(FLOOR), *(Thing(model, pose) for model, pose in things)]
+    snapshot = snapshot_of(every, environment=environment, lights=lights)
+    contents = snapshot.contents
+    first, *others = contents.instances
+    still = replace(first, instance=replace(first.instance, static=True))
+    snapshot = replace(snapshot, contents=replace(contents, instances=(still, *others)))
+    light = bake(snapshot, settings=COARSE)
+    return replace(snapshot, contents=replace(snapshot.contents, baked=light))
+
+
+def scene_of(snapshot: WorldSnapshot) -> BakedScene:
+    assert snapshot.contents.baked is not None
+    return BakedScene(snapshot.contents.baked, snapshot.contents, 1)
+
+
+def light_on(snapshot: WorldSnapshot, which: int = 0) -> ObjectLight:
+    """The light on one of the things, with all others near."""
+    things = movable_objects(snapshot)
+    others = [thing for thing in things if thing is not things[which]]
+    lighting = ObjectLighting(scene_of(snapshot), (), SurfacePoints())
+    return lighting.light_on(things[which], others, FINE)
+
+
+def value(terms: NDArray[np.float32], normal: tuple[float, ...], point: tuple[float, ...]) -> float:
+    """The twelve terms of light_law.h."""
+    x, y, z = normal
+    basis = [1, x, y, z, x * y, y * z, z * x, x * x - y * y, 3 * z * z - 1, *point]
+    return float(np.dot(basis, terms))
+
+
+def moved(snapshot: WorldSnapshot, row: int, x: float) -> WorldSnapshot:
+    """A thing at another place."""
+    poses = snapshot.world_from_body.copy()
+    poses[row, 0, 3] = x
+    return replace(snapshot, world_from_body=poses)
+
+
+def test_in_an_even_sky_every_side_has_the_sky_light() -> None:
+    """Irradiance / pi is the sky's radiance where a small black floor hides little of it."""
+    found = light_on(room((BOX, Pose((0.0, 0.0, 9.0))), environment=WHITE_SKY))
+    for normal in ((1, 0, 0), (0, -1, 0), (0, 0, 1)):
+        at = tuple(0.1 * np.array(normal) + (0.0, 0.0, 9.0))
+        assert value(found.bounced[0, :, 1], normal, at) == pytest.approx(0.8, rel=0.02)
+
+
+def test_a_lamp_lights_by_distance_and_angle() -> None:
+    """The top faces it at 0.9 m, so intensity / (pi 0.81); the bottom gets nothing."""
+    found = light_on(room((BOX, IN_THE_AIR), lights=(LAMP,)))
+    top = value(found.direct[1], (0, 0, 1), (0.0, 0.0, 1.1))
+    assert top == pytest.approx(1.0 / (np.pi * 0.81), rel=0.1)
+    assert abs(value(found.direct[1], (0, 0, -1), (0.0, 0.0, 0.9))) < 0.1 * top
+
+
+def test_what_stands_between_takes_a_lamps_light() -> None:
+    """A board under the lamp shades the box below; it is no part of the bake."""
+    board = model_of(box_mesh((1.0, 1.0, 0.02)), base_colour=BLACK)
+    shaded = light_on(room((BOX, IN_THE_AIR), (board, Pose((0.0, 0.0, 1.6))), lights=(LAMP,)))
+    assert np.abs(shaded.direct).max() == 0.0
+
+
+def test_sides_that_face_each_other_are_darker() -> None:
+    """Of two black boxes side by side, 1 cm apart, the gap is dark and the other side is not."""
+    pair = room((BOX, IN_THE_AIR), (BOX, Pose((0.21, 0.0, 1.0))), environment=WHITE_SKY)
+    found = light_on(pair)
+    inner = value(found.bounced[0, :, 0], (1, 0, 0), (0.1, 0.0, 1.0))
+    outer = value(found.bounced[0, :, 0], (-1, 0, 0), (-0.1, 0.0, 1.0))
+    assert inner < 0.35 * outer
+
+
+def test_light_is_a_function_of_what_stands_where() -> None:
+    """Threads, and what was shown before, change no bit; what stands still keeps its mapping."""
+    snapshot = room((BOX, IN_THE_AIR), (BOX, Pose((0.6, 0.0, 0.5))), lights=(LAMP,))
+    scene = scene_of(snapshot)
+    one, two = ObjectLights(), ObjectLights()
+    first = one.update(snapshot, scene, (), threads=1)
+    assert one.update(snapshot, scene, (), threads=1) is first
+    one.update(moved(snapshot, 1, 0.3), scene, (), threads=1)
+    back = one.update(snapshot, scene, (), threads=1)
+    other = two.update(snapshot, scene, (), threads=4)
+    for light in (back, other):
+        assert light.keys() == first.keys() == {2, 3}
+        for id_, own in first.items():
+            assert np.array_equal(own.bounced, light[id_].bounced)
+            assert np.array_equal(own.direct, light[id_].direct)
+
+
+def test_many_things_on_their_way_cost_little(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only so many that stand elsewhere get light of their own; at first all do."""
+    monkeypatch.setattr(module, "MOST_ELSEWHERE", 1)
+    snapshot = room((BOX, IN_THE_AIR), (BOX, Pose((0.6, 0.0, 0.5))), (BOX, Pose((-0.6, 0.0, 0.5))))
+    scene, lights = scene_of(snapshot), ObjectLights()
+    assert lights.update(snapshot, scene, (), threads=1).keys() == {2, 3, 4}
+    shown = moved(moved(snapshot, 1, 0.1), 2, 0.5)
+    assert lights.update(shown, scene, (), threads=1).keys() == {2, 4}
+
+
+def test_creeping_by_less_than_can_be_seen_changes_nothing() -> None:
+    """Things that come to rest move for seconds by a few hundredths of a millimetre."""
+    snapshot = room((BOX, IN_THE_AIR))
+    scene, lights = scene_of(snapshot), ObjectLights()
+    first = lights.update(snapshot, scene, (), threads=1)
+    assert lights.update(moved(snapshot, 1, 3e-5), scene, (), threads=1) is first
+
+
+def test_only_what_can_move_and_keeps_its_shape_is_lit() -> None:
+    """Neither what was baked nor what deforms."""
+    snapshot = room((BOX, IN_THE_AIR), (BOX, Pose((0.6, 0.0, 0.5))))
+    contents = snapshot.contents
+    *others, last = contents.instances
+    instances = (*others, replace(last, deforms=True))
+    seen = movable_objects(replace(snapshot, contents=replace(contents, instances=instances)))
+    assert [thing.id for thing in seen] == [2]
+    assert isinstance(seen[0], PlacedObject)
