@@ -9,7 +9,6 @@ from functools import lru_cache
 from types import MappingProxyType
 
 from sailenv_content.families.names import FORM, PieceName, has_form, parsed
-from sailenv_content.families.registry import family_named, family_names
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.types.model import Asset
 
@@ -68,6 +67,9 @@ class FamilySource:
 
 @lru_cache(maxsize=4096)
 def _problem(name: str) -> UnknownName | None:
+    # Not before a piece is asked for: families load scipy, which takes a second.
+    from sailenv_content.families.registry import family_named, family_names
+
     wanted = parsed(name)
     if wanted is None:
         return UnknownName("asset", name, (), also=f"{FORM} with a seed from 0 to 2147483647")
@@ -86,6 +88,7 @@ def _problem(name: str) -> UnknownName | None:
 
 def _piece(name: PieceName) -> Asset:
     from sailenv_content.families.making import make_piece
+    from sailenv_content.families.registry import family_named
 
     with _lock:
         found = _made.get(name)
