@@ -87,10 +87,20 @@ class EnvironmentSpec(SceneModel):
         default=_STANDARD.exposure,
         description="the picture is brightened by 2 to the power of it [stops]",
     )
+    meter_exposure: Annotated[bool, Switch()] = Field(
+        default=False,
+        description="true: in baked light the exposure is measured instead, so that highlights "
+        "are not white; always so in a room without `exposure`",
+    )
+
+    @property
+    def is_metered(self) -> bool:
+        """Whether the exposure is measured in baked light."""
+        return self.meter_exposure or "exposure" not in self.model_fields_set
 
     def to_environment(self) -> Environment:
         """Return the data type that the renderer takes."""
-        return Environment(**self.model_dump())
+        return Environment(**self.model_dump(exclude={"meter_exposure"}))
 
 
 class _LightBase(SceneModel):

@@ -53,7 +53,7 @@ __all__ = [
     "store_draft",
 ]
 
-FORMAT = 4
+FORMAT = 5
 MAGIC = b"sailenv_ros baked light\n"
 DIGEST_BYTES = 32
 
@@ -248,6 +248,7 @@ def _arrays_of(baked: BakedLight) -> dict[str, NDArray[Any]]:
             for instance, chart in baked.charts.items()
         },
     }
+    arrays["seen"] = baked.seen
     arrays["description"] = np.frombuffer(json.dumps(description).encode(), dtype=np.uint8)
     return arrays
 
@@ -291,6 +292,7 @@ def _baked_of(arrays: Mapping[str, NDArray[Any]]) -> BakedLight:
         },
         layers=tuple(layers),
         probes=ProbeGrid(**_with_tuples(description["probes"])),
+        seen=_frozen(arrays["seen"]),
     )
 
 

@@ -200,9 +200,9 @@ class _Bake:
         )  # fmt: skip
         solver = Solver(few, self._snapshot.contents.lights, drafted(self._settings), self._stages)
         solver.begin()
-        tiles = _tiles(texels, chosen)
+        tiles = texels.tiles(chosen)
         # Of patches that share a tile one is averaged: what is at edges stays as it is.
-        alone = np.bincount(_places_of(tiles), minlength=1)[_places_of(tiles)] == 1
+        alone = np.bincount(tiles.places, minlength=1)[tiles.places] == 1
         for _ in range(DRAFT_SMOOTHING):
             # Few rays leave blotches, which are wider than what texels are averaged over.
             smooth = denoised(
@@ -302,7 +302,14 @@ class _Bake:
             charts=self._layout.charts,
             layers=tuple(layers),
             probes=grid,
+            seen=self._seen(solver, of_texel),
         )
+
+    def _seen(self, solver: Solver, of_texel: NDArray[np.int32] | None) -> NDArray[np.float16]:
+        """Return (K, L, 3): the radiance that eyes see."""
+        texels = self._views.level(self._spots, self._visibility.useful)
+        seen = solver.radiance[texels if of_texel is None else of_texel[texels]]
+        return seen.reshape(len(texels), len(solver.lights), 3).astype(np.float16)
 
     def _sun_edges(self, entry: SolvedLight, valid: NDArray[np.bool_]) -> SunEdges:
         """Return where a directional light's shadows end; found once for all results."""
@@ -325,26 +332,3 @@ class _Bake:
 
 def _is_soft(entry: SolvedLight) -> bool:
     return entry.light is not None and entry.light.type == "area"
-
-
-def _tiles(texels: Texels, chosen: NDArray[np.intp]) -> Texels:
-    """Return some texels, one for each tile of 4 by 4, as those of a map of a quarter the size."""
-    rows, columns = texels.rows[chosen] // 4, texels.columns[chosen] // 4
-    index = np.full((texels.index.shape[0] // 4 + 1,) * 2, -1, np.int32)
-    index[rows, columns] = np.arange(len(chosen))
-    return Texels(
-        index=index,
-        rows=rows,
-        columns=columns,
-        triangle=texels.triangle[chosen],
-        weights=texels.weights[chosen],
-        positions=texels.positions[chosen],
-        normals=texels.normals[chosen],
-        faces=texels.faces[chosen],
-    )
-
-
-def _places_of(texels: Texels) -> NDArray[np.int64]:
-    """Return (N,) the number of each texel's place in the map."""
-    places: NDArray[np.int64] = texels.rows.astype(np.int64) * texels.index.shape[1]
-    return places + texels.columns
