@@ -97,7 +97,7 @@ def test_highlights_are_protected_and_the_sky_does_not_count(renderer: RenderBac
     sky = replace(BLACK, background_colour=(16.0, 16.0, 16.0))
     made = renderer.render(snapshot_of([shining(0.25, 1.0)], environment=sky, lights=()), None, camera, ("rgb",))
     assert made.adapted is not None
-    assert made.adapted.stops == pytest.approx(wanted(0.25), abs=0.1)
+    assert made.adapted.stops == pytest.approx(wanted(0.25), abs=0.2)
 
 
 def test_the_way_there_is_exponential(renderer: RenderBackend) -> None:

@@ -1,7 +1,7 @@
 """Keeps baked light in the user's cache, by fingerprint. From `BakedLight` to a file and back.
 
-A file is a line that names the format, a checksum of the rest, and NumPy's arrays as `np.savez`
-writes them. One that cannot be used counts as none: it is reported once and baked again.
+A file is a line that names the format, a checksum of the rest, and arrays, each coded by
+`array_coding`, as `np.savez` writes them. One that cannot be used counts as none: it is reported once and baked again.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import json
 import logging
 import os
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict, replace
 from itertools import chain
@@ -21,6 +22,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.bake.array_coding import coded, decoded
+from sailenv_ros.native.library import thread_count
 from sailenv_ros.system.files import (
     file_lock,
     make_folder,
@@ -107,7 +110,10 @@ def store_draft(baked: BakedLight) -> Path:
 
 def _stored(baked: BakedLight, path: Path) -> Path:
     arrays = io.BytesIO()
-    np.savez(arrays, allow_pickle=False, **_arrays_of(baked))
+    given = _arrays_of(baked)
+    with ThreadPoolExecutor(thread_count()) as pool:
+        few = dict(zip(given, pool.map(coded, given.values()), strict=True))
+    np.savez(arrays, allow_pickle=False, **few)
     payload = arrays.getbuffer()
     with storage_errors("the baked light", path), _lock():
         remove_unfinished(path.parent)
@@ -134,8 +140,11 @@ def _loaded(path: Path, fingerprint: str) -> BakedLight | None:
         return None
     try:
         payload, checksum = _payload(path)
-        with np.load(io.BytesIO(payload), allow_pickle=False) as arrays:
-            baked = replace(_baked_of(arrays), checksum=checksum.hex())
+        with np.load(io.BytesIO(payload), allow_pickle=False) as file:
+            few = dict(file)
+        with ThreadPoolExecutor(thread_count()) as pool:
+            arrays = dict(zip(few, pool.map(decoded, few.values()), strict=True))
+        baked = replace(_baked_of(arrays), checksum=checksum.hex())
         if baked.fingerprint != fingerprint:
             raise ValueError("it was made for another scene")
     except Exception as problem:  # whatever a damaged file leads to: the light is baked anew
