@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.bake.array_coding import rounded
 from sailenv_ros.light.bake.back_to_back import back_to_back_faces
 from sailenv_ros.light.bake.bounces import Patches, patches_of
 from sailenv_ros.light.bake.denoise import denoised, dilated
@@ -129,7 +130,10 @@ class _Bake:
         stages.begin("visibility", 0.02)
         self._visibility = probe_visibility(geometry, scene, self._spots, settings.probe_rays)
         visible = visible_triangles(geometry, self._visibility.seen)
-        layout = laid_out(geometry, settings, visible, stages.begin("surfaces", 0.14))
+        layout = laid_out(
+            geometry, settings, visible, stages.begin("surfaces", 0.14),
+            layers=1 + len(contents.lights),
+        )  # fmt: skip
         texels = lit_texels(geometry, scene, layout, stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
         emission = emission_of(geometry, layout, texels)
@@ -327,7 +331,7 @@ class _Bake:
         texels = self._texels
         result: NDArray[Any] = np.zeros((*texels.index.shape, *values.shape[1:]), dtype=kind)
         result[texels.rows, texels.columns] = values
-        return result
+        return rounded(result) if kind is np.float16 else result
 
 
 def _is_soft(entry: SolvedLight) -> bool:

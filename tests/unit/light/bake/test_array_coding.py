@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.array_coding import coded, decoded
+from sailenv_ros.light.bake.array_coding import coded, decoded, rounded
 
 KINDS = (np.float16, np.uint8, np.int32, np.uint32, np.float32, np.float64)
 
@@ -27,6 +27,17 @@ def test_every_array_comes_back(array: NDArray[Any]) -> None:
     same = decoded(coded(array))
     assert (same.dtype, same.shape) == (array.dtype, array.shape)
     assert same.tobytes() == array.tobytes()
+
+
+def test_light_is_rounded_to_the_nearest_of_nine_bits() -> None:
+    """At most 0.2 % off where half precision is relative, and never infinite."""
+    every = np.arange(0x7C00, dtype=np.uint16).view(np.float16)
+    near = rounded(every)
+    assert not (near.view(np.uint16) & 3).any()
+    assert np.isfinite(near).all()
+    normal = every.astype(float)[0x400:-4]
+    assert (np.abs(near.astype(float)[0x400:-4] / normal - 1.0) <= 2.0**-9 + 1e-12).all()
+    assert (rounded(near) == near).all()
 
 
 def test_smooth_light_takes_a_quarter() -> None:
