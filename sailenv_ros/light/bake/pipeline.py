@@ -31,7 +31,7 @@ from sailenv_ros.light.bake.light_probes import (
     straight_light,
 )
 from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
-from sailenv_ros.light.bake.reflectance import albedo_of, emission_of, glow_of
+from sailenv_ros.light.bake.reflectance import albedo_of, emission_of, glows_of
 from sailenv_ros.light.bake.sampling import tile_shift
 from sailenv_ros.light.bake.settings import BakeSettings, drafted
 from sailenv_ros.light.bake.sky import panes
@@ -42,7 +42,7 @@ from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.light.bake.visibility import probe_visibility, visible_triangles
 from sailenv_ros.native.bake_types import SkyWindows
 from sailenv_ros.rays.light_rays import NEVER, RayScene
-from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
+from sailenv_ros.rays.static_geometry import static_geometry_of
 from sailenv_ros.types.baked_light import BakedLight, LightLayer, SunEdges
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import WorldSnapshot
@@ -137,7 +137,9 @@ class _Bake:
         texels = lit_texels(geometry, scene, layout, stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
         emission = emission_of(geometry, layout, texels)
-        glows = self._glows(geometry, texels)
+        glows = glows_of(
+            geometry, texels, {d.instance.id: d.lit_by for d in contents.instances}
+        )
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,
@@ -172,16 +174,6 @@ class _Bake:
             texels=texels,
             owner=geometry.owner[texels.triangle],
         )
-
-    def _glows(self, geometry: StaticGeometry, texels: Texels) -> dict[str, Floats]:
-        """Return what the shades of lamps emit by each light that is in one."""
-        lamps: dict[str, list[int]] = {}
-        lit_by = {d.instance.id: d.lit_by for d in self._snapshot.contents.instances}
-        for place, instance in enumerate(geometry.instances):
-            for name in lit_by[instance.id]:
-                lamps.setdefault(name, []).append(place)
-        found = {name: glow_of(geometry, texels, places) for name, places in lamps.items()}
-        return {name: glow for name, glow in found.items() if glow.any()}
 
     def _draft(self, samples: Samples) -> BakedLight:
         """Return the light as one texel of each patch gets it, spread over the patch."""

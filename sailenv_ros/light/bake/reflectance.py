@@ -6,7 +6,7 @@ everywhere, too: the amount is right, the direction is the mean one. Normal maps
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import cv2
 import numpy as np
@@ -19,7 +19,7 @@ from sailenv_ros.rays.static_geometry import StaticGeometry
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 from sailenv_ros.types.model import Material
 
-__all__ = ["albedo_of", "emission_of", "glow_of", "returned"]
+__all__ = ["albedo_of", "emission_of", "glows_of", "returned"]
 
 BRIGHTEST = 0.95
 """No surface gives back more: bounces would not end."""
@@ -43,19 +43,31 @@ def emission_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDA
     return emission
 
 
-def glow_of(geometry: StaticGeometry, texels: Texels, owners: Iterable[int]) -> NDArray[np.float32]:
-    """Return (N, 3) float32: what texels of lamps emit for 1 W/sr of white light.
+def glows_of(
+    geometry: StaticGeometry, texels: Texels, lit_by: Mapping[int, Iterable[str]]
+) -> dict[str, NDArray[np.float32]]:
+    """Return what the shades of lamps emit for 1 W/sr of white light, by the light in them.
 
     Parameters
     ----------
-    owners : iterable of int
-        Places in `geometry.instances` of the lamps that are on by it.
+    lit_by : mapping of int to iterable of str
+        Names of the lights that are in an instance, by its id.
+
+    Returns
+    -------
+    glows : dict of str to (N, 3) float32
+        Lights alone that make a texel glow.
     """
-    table = np.zeros((len(geometry.materials) + 1, 3), dtype=np.float32)
-    for place, material in enumerate(geometry.materials):
-        table[place] = material.glow
-    own = np.isin(geometry.owner[texels.triangle], np.fromiter(owners, np.int64))
-    return table[geometry.material[texels.triangle]] * own[:, None]
+    lamps: dict[str, list[int]] = {}
+    for place, instance in enumerate(geometry.instances):
+        for name in lit_by[instance.id]:
+            lamps.setdefault(name, []).append(place)
+    table = np.array([look.glow for look in geometry.materials], np.float32).reshape(-1, 3)
+    owner, material = geometry.owner[texels.triangle], geometry.material[texels.triangle]
+    found = {
+        name: table[material] * np.isin(owner, places)[:, None] for name, places in lamps.items()
+    }
+    return {name: glow for name, glow in found.items() if glow.any()}
 
 
 def albedo_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDArray[np.float32]:
