@@ -76,11 +76,16 @@ def shining(radiance: float, side: float) -> Thing:
     return Thing(wall, Pose((2.0, 20.0 * side, 0.0)))
 
 
+def dark(*things: Thing, sky: Environment = BLACK) -> WorldSnapshot:
+    """Return things without a light on them."""
+    return snapshot_of(things, environment=sky, lights=())
+
+
 def test_the_meter_takes_the_mean_of_logarithms(renderer: RenderBackend) -> None:
     """Half of the picture 64 times as bright: three stops, not six."""
     halves = [shining(16.0, 1.0), shining(0.25, -1.0)]
     camera = eye(replace(AUTOMATIC, occlusion_strength=0.0))
-    made = renderer.render(snapshot_of(halves, environment=BLACK, lights=()), None, camera, ("rgb",))
+    made = renderer.render(dark(*halves), None, camera, ("rgb",))
     assert made.adapted is not None
     mean = 0.5 * (math.log2(0.25 + 1e-4) + math.log2(16.0 + 1e-4))
     # The column in the middle may be of either.
@@ -91,11 +96,11 @@ def test_highlights_are_protected_and_the_sky_does_not_count(renderer: RenderBac
     """Half 1,024 times as bright would be white; a sky in its place changes nothing."""
     camera = eye(replace(AUTOMATIC, occlusion_strength=0.0))
     halves = [shining(16.0, 1.0), shining(2.0**-6, -1.0)]
-    made = renderer.render(snapshot_of(halves, environment=BLACK, lights=()), None, camera, ("rgb",))
+    made = renderer.render(dark(*halves), None, camera, ("rgb",))
     assert made.adapted is not None
     assert made.adapted.stops == pytest.approx(math.log2(HIGHLIGHT / (16.0 + 1e-4)), abs=1e-3)
     sky = replace(BLACK, background_colour=(16.0, 16.0, 16.0))
-    made = renderer.render(snapshot_of([shining(0.25, 1.0)], environment=sky, lights=()), None, camera, ("rgb",))
+    made = renderer.render(dark(shining(0.25, 1.0), sky=sky), None, camera, ("rgb",))
     assert made.adapted is not None
     assert made.adapted.stops == pytest.approx(wanted(0.25), abs=0.2)
 

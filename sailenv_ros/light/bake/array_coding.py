@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["coded", "decoded", "rounded"]
+__all__ = ["LEVEL", "QUICK_LEVEL", "coded", "decoded", "rounded"]
 
-LEVEL = 6
-"""Effort of deflating: more takes three times as long for less than a percent."""
+LEVEL, QUICK_LEVEL = 6, 1
+"""Efforts of deflating: more than 6 takes three times as long for less than a percent."""
 
 DROPPED_BITS = 2
 """Last bits of half-precision light that are left out: they are below the noise of its rays."""
@@ -42,7 +42,7 @@ def rounded(light: NDArray[np.float16]) -> NDArray[np.float16]:
     return found
 
 
-def coded(array: NDArray[Any]) -> NDArray[np.uint8]:
+def coded(array: NDArray[Any], level: int = LEVEL) -> NDArray[np.uint8]:
     """Return an array as bytes: one line that says what it is, then its numbers."""
     told = json.dumps([array.dtype.str, array.shape]).encode() + b"\n"
     numbers = np.ascontiguousarray(array).view(_INTEGERS[array.itemsize])
@@ -51,7 +51,7 @@ def coded(array: NDArray[Any]) -> NDArray[np.uint8]:
     # Small steps down are small numbers, too.
     small = ((steps << 1) ^ (signed >> (8 * array.itemsize - 1)).view(steps.dtype)).reshape(-1)
     planes = small.view(np.uint8).reshape(-1, array.itemsize).T
-    return np.frombuffer(told + _deflated(planes.tobytes()), np.uint8)
+    return np.frombuffer(told + _deflated(planes.tobytes(), level), np.uint8)
 
 
 def decoded(data: NDArray[np.uint8]) -> NDArray[Any]:
@@ -63,20 +63,20 @@ def decoded(data: NDArray[np.uint8]) -> NDArray[Any]:
         If the bytes are none of an array.
     """
     told, _, packed = data.tobytes().partition(b"\n")
-    name, shape = json.loads(told)
-    kind = np.dtype(name)
     try:
+        name, shape = json.loads(told)
+        kind = np.dtype(name)
         planes = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(kind.itemsize, -1)
-    except zlib.error as problem:
-        raise ValueError(str(problem)) from problem
-    small = np.ascontiguousarray(planes.T).view(_INTEGERS[kind.itemsize]).reshape(_rows(shape))
+        small = np.ascontiguousarray(planes.T).view(_INTEGERS[kind.itemsize]).reshape(_rows(shape))
+    except (ValueError, TypeError, KeyError, zlib.error) as problem:
+        raise ValueError(f"it is no coded array ({problem})") from problem
     one = small.dtype.type(1)
     steps = (small >> one) ^ (~(small & one) + one)
     return _sums(steps).view(kind).reshape(shape)
 
 
-def _deflated(data: bytes) -> bytes:
-    deflating = zlib.compressobj(LEVEL, zlib.DEFLATED, zlib.MAX_WBITS, 9, zlib.Z_FILTERED)
+def _deflated(data: bytes, level: int) -> bytes:
+    deflating = zlib.compressobj(level, zlib.DEFLATED, zlib.MAX_WBITS, 9, zlib.Z_FILTERED)
     return deflating.compress(data) + deflating.flush()
 
 

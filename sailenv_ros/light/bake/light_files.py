@@ -1,7 +1,8 @@
 """Keeps baked light in the user's cache, by fingerprint. From `BakedLight` to a file and back.
 
 A file is a line that names the format, a checksum of the rest, and arrays, each coded by
-`array_coding`, as `np.savez` writes them. One that cannot be used counts as none: it is reported once and baked again.
+`array_coding`, as `np.savez` writes them. One that cannot be used counts as none: it is reported
+once and baked again.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict, replace
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -22,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.array_coding import coded, decoded
+from sailenv_ros.light.bake.array_coding import LEVEL, QUICK_LEVEL, coded, decoded
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.system.files import (
     file_lock,
@@ -98,21 +100,22 @@ def store_baked(baked: BakedLight) -> Path:
     DeadlineExceeded
         If another process kept writing to the folder.
     """
-    path = _stored(baked, baked_file(baked.fingerprint))
+    path = _stored(baked, baked_file(baked.fingerprint), LEVEL)
     path.with_suffix(DRAFT_SUFFIX).unlink(missing_ok=True)
     return path
 
 
 def store_draft(baked: BakedLight) -> Path:
     """Keep rough light until `store_baked` is called with the light itself; errors as of that."""
-    return _stored(baked, baked_file(baked.fingerprint).with_suffix(DRAFT_SUFFIX))
+    path = baked_file(baked.fingerprint).with_suffix(DRAFT_SUFFIX)
+    return _stored(baked, path, QUICK_LEVEL)
 
 
-def _stored(baked: BakedLight, path: Path) -> Path:
+def _stored(baked: BakedLight, path: Path, level: int) -> Path:
     arrays = io.BytesIO()
     given = _arrays_of(baked)
     with ThreadPoolExecutor(thread_count()) as pool:
-        few = dict(zip(given, pool.map(coded, given.values()), strict=True))
+        few = dict(zip(given, pool.map(partial(coded, level=level), given.values()), strict=True))
     np.savez(arrays, allow_pickle=False, **few)
     payload = arrays.getbuffer()
     with storage_errors("the baked light", path), _lock():

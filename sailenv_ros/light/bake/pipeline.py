@@ -21,6 +21,7 @@ from sailenv_ros.light.bake.emitters import emitters_of
 from sailenv_ros.light.bake.facing import lit_texels
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.gather import Surroundings
+from sailenv_ros.light.bake.lamp_glow import glows_of
 from sailenv_ros.light.bake.layout import laid_out
 from sailenv_ros.light.bake.light_probes import (
     ProbeViews,
@@ -31,14 +32,13 @@ from sailenv_ros.light.bake.light_probes import (
     straight_light,
 )
 from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
-from sailenv_ros.light.bake.reflectance import albedo_of, emission_of, glows_of
+from sailenv_ros.light.bake.reflectance import albedo_of, emission_of
 from sailenv_ros.light.bake.sampling import tile_shift
 from sailenv_ros.light.bake.settings import BakeSettings, drafted
 from sailenv_ros.light.bake.sky import panes
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.bake.solving import Samples, SolvedLight, Solver, Stages
 from sailenv_ros.light.bake.sun_edges import sun_edges
-from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.light.bake.visibility import probe_visibility, visible_triangles
 from sailenv_ros.native.bake_types import SkyWindows
 from sailenv_ros.rays.light_rays import NEVER, RayScene
@@ -137,9 +137,7 @@ class _Bake:
         texels = lit_texels(geometry, scene, layout, stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
         emission = emission_of(geometry, layout, texels)
-        glows = glows_of(
-            geometry, texels, {d.instance.id: d.lit_by for d in contents.instances}
-        )
+        glows = glows_of(geometry, texels, {d.instance.id: d.lit_by for d in contents.instances})
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,

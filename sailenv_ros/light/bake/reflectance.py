@@ -6,8 +6,6 @@ everywhere, too: the amount is right, the direction is the mean one. Normal maps
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +17,7 @@ from sailenv_ros.rays.static_geometry import StaticGeometry
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 from sailenv_ros.types.model import Material
 
-__all__ = ["albedo_of", "emission_of", "glows_of", "returned"]
+__all__ = ["albedo_of", "emission_of", "returned"]
 
 BRIGHTEST = 0.95
 """No surface gives back more: bounces would not end."""
@@ -41,33 +39,6 @@ def emission_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDA
             fineness = _texture_texels(geometry, layout) if fineness is None else fineness
             emission[chosen] *= _picture_at(geometry, texels, chosen, look, fineness)
     return emission
-
-
-def glows_of(
-    geometry: StaticGeometry, texels: Texels, lit_by: Mapping[int, Iterable[str]]
-) -> dict[str, NDArray[np.float32]]:
-    """Return what the shades of lamps emit for 1 W/sr of white light, by the light in them.
-
-    Parameters
-    ----------
-    lit_by : mapping of int to iterable of str
-        Names of the lights that are in an instance, by its id.
-
-    Returns
-    -------
-    glows : dict of str to (N, 3) float32
-        Lights alone that make a texel glow.
-    """
-    lamps: dict[str, list[int]] = {}
-    for place, instance in enumerate(geometry.instances):
-        for name in lit_by[instance.id]:
-            lamps.setdefault(name, []).append(place)
-    table = np.array([look.glow for look in geometry.materials], np.float32).reshape(-1, 3)
-    owner, material = geometry.owner[texels.triangle], geometry.material[texels.triangle]
-    found = {
-        name: table[material] * np.isin(owner, places)[:, None] for name, places in lamps.items()
-    }
-    return {name: glow for name, glow in found.items() if glow.any()}
 
 
 def albedo_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDArray[np.float32]:

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.bounces import patches_of
 from sailenv_ros.light.bake.facing import lit_texels
+from sailenv_ros.light.bake.lamp_glow import glows_of
 from sailenv_ros.light.bake.layout import Layout
-from sailenv_ros.light.bake.reflectance import glows_of
 from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.bake.texels import Texels

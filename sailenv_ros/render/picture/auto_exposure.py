@@ -86,8 +86,8 @@ def picture_exposure(
     step = max(1, min(radiance.shape[:2]) // METERED_ROWS)
     rows = slice(step // 2, None, step)
     seen = radiance[rows, rows, :3]
-    counts = None if inside is None else inside[rows, rows]
-    return metered_exposure(seen.reshape(-1, 3) if counts is None or not counts.any() else seen[counts])
+    counts = np.ones(seen.shape[:2], bool) if inside is None else inside[rows, rows]
+    return metered_exposure(seen[counts] if counts.any() else seen.reshape(-1, 3))
 
 
 def followed(

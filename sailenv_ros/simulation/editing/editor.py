@@ -22,9 +22,9 @@ from sailenv_ros.simulation.editing.material_edits import (
     set_surface,
 )
 from sailenv_ros.simulation.editing.saving import environment_entry
-from sailenv_ros.simulation.room_exposure import meter
 from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.simulation.robot_entries import robot_placement
+from sailenv_ros.simulation.room_exposure import meter
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.bodies import Body

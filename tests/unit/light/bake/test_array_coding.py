@@ -50,5 +50,5 @@ def test_smooth_light_takes_a_quarter() -> None:
 
 @pytest.mark.parametrize("data", [b"", b"[]\n", b'["<f2", [4]]\nno', b'["<f2", [4]]\n'])
 def test_other_bytes_are_refused(data: bytes) -> None:
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match="no coded array"):
         decoded(np.frombuffer(data, np.uint8))
