@@ -36,13 +36,15 @@ def meter(world: World) -> None:
     """Measure a world's exposure, where that is wanted."""
     baked = world.contents.baked
     if baked is not None and is_metered(world):
-        stops = room_exposure(baked, world.contents.lights)
+        assert world.described is not None
+        wanted = world.described.environment.wanted_exposure
+        stops = room_exposure(baked, world.contents.lights, wanted)
         world.set_environment(replace(world.contents.environment, exposure=stops))
         world.set_baked(baked)
 
 
-def room_exposure(baked: BakedLight, lights: Iterable[Light]) -> float:
-    """Return the stops for a room in its baked light, to a hundredth.
+def room_exposure(baked: BakedLight, lights: Iterable[Light], wanted: float | None = None) -> float:
+    """Return the stops for a room in its baked light, to a hundredth; see `metered_exposure`.
 
     Parameters
     ----------
@@ -57,4 +59,4 @@ def room_exposure(baked: BakedLight, lights: Iterable[Light]) -> float:
             seen += radiance
         elif light := shining.get(layer.light.name):
             seen += radiance * (np.asarray(light.colour) * light.intensity)
-    return round(metered_exposure(seen), 2)
+    return round(metered_exposure(seen, wanted), 2)

@@ -72,7 +72,8 @@ def decoded(data: NDArray[np.uint8]) -> NDArray[Any]:
         raise ValueError(f"it is no coded array ({problem})") from problem
     one = small.dtype.type(1)
     steps = (small >> one) ^ (~(small & one) + one)
-    return _sums(steps).view(kind).reshape(shape)
+    array: NDArray[Any] = _sums(steps).view(kind).reshape(shape)
+    return array
 
 
 def _deflated(data: bytes, level: int) -> bytes:

@@ -49,13 +49,15 @@ METERED_ROWS = 120
 """Least rows and columns that are looked at, where there are so many."""
 
 
-def metered_exposure(light: NDArray[np.floating]) -> float:
+def metered_exposure(light: NDArray[np.floating], wanted: float | None = None) -> float:
     """Return the stops for light: its mean becomes `MIDDLE_GREY`, its highlights do not clip.
 
     Parameters
     ----------
     light : (N, 3) float
-        Linear radiance of points that count alike; without any, 0 stops.
+        Linear radiance of points that count alike; without any, the wanted stops, or 0.
+    wanted : float or None
+        Stops that are right but for highlights; None takes those of the mean.
 
     Returns
     -------
@@ -63,12 +65,12 @@ def metered_exposure(light: NDArray[np.floating]) -> float:
         From -`MAX_STOPS` to `MAX_STOPS`.
     """
     if not len(light):
-        return 0.0
+        return wanted or 0.0
     seen = np.maximum(light.astype(np.float64), 0.0)
-    mean = float(np.log2(seen @ LUMINANCE + DARKEST).mean())
+    if wanted is None:
+        wanted = math.log2(MIDDLE_GREY) - float(np.log2(seen @ LUMINANCE + DARKEST).mean())
     bright = np.sort(seen.max(axis=1))[-1 - int(WHITE_SHARE * len(seen))] + DARKEST
-    stops = min(math.log2(MIDDLE_GREY) - mean, math.log2(HIGHLIGHT / bright))
-    return min(max(stops, -MAX_STOPS), MAX_STOPS)
+    return min(max(min(wanted, math.log2(HIGHLIGHT / bright)), -MAX_STOPS), MAX_STOPS)
 
 
 def picture_exposure(

@@ -57,8 +57,12 @@ def test_highlights_hold_the_exposure_back() -> None:
     light[:free] = 50.0
     mean = np.log2(light @ [0.2126, 0.7152, 0.0722] + DARKEST).mean()
     assert metered_exposure(light) == pytest.approx(math.log2(MIDDLE_GREY) - mean)
+    assert metered_exposure(light, 0.5) == 0.5
     light[free] = 50.0, 0.0, 0.0
-    assert metered_exposure(light) == pytest.approx(math.log2(HIGHLIGHT / (50.0 + DARKEST)))
+    held = math.log2(HIGHLIGHT / (50.0 + DARKEST))
+    assert metered_exposure(light) == pytest.approx(held)
+    assert metered_exposure(light, 0.5) == pytest.approx(held)
+    assert metered_exposure(light, -6.0) == -6.0
 
 
 def test_black_and_endless_light_have_limits() -> None:
@@ -113,9 +117,11 @@ def test_only_baked_rooms_that_name_no_exposure_are_metered(cell: Path) -> None:
     assert exposure_of(cell, baked_light=False) == 0.0
     cell.write_text(ROOM + "environment: {exposure: 0.5}\n")
     assert exposure_of(cell) == 0.5
-    cell.write_text(ROOM + "environment: {exposure: 0.5, meter_exposure: true}\n")
-    assert exposure_of(cell) == metered
-    assert exposure_of(cell, baked_light=False) == 0.5
+    cell.write_text(ROOM + "environment: {exposure: -1.5, meter_exposure: true}\n")
+    assert exposure_of(cell) == -1.5
+    cell.write_text(ROOM + "environment: {exposure: 12, meter_exposure: true}\n")
+    assert metered < exposure_of(cell) < 12
+    assert exposure_of(cell, baked_light=False) == 12
     cell.write_text(ROOM.replace("intensity: 2", "intensity: 4"))
     assert exposure_of(cell) == pytest.approx(metered - 1.0, abs=0.02)
 
@@ -130,5 +136,5 @@ def test_an_exposure_that_is_set_stays(cell: Path) -> None:
         core.set_environment(exposure=1.5)
         assert core.info.environment.exposure == 1.5
         assert "exposure: 1.5" in core.scene_text()
-        core.set_environment(meter_exposure=True)
-        assert core.info.environment.exposure == metered
+        core.set_environment(exposure=12, meter_exposure=True)
+        assert metered < core.info.environment.exposure < 12
