@@ -200,11 +200,13 @@ class BakedScene:
         self.owners = ids[geometry.owner[texels.triangle]]
         self.patches = self._patches(geometry, texels)
         layers = self.baked.layers
-        number = {layer.light.name: n for n, layer in enumerate(layers) if layer.light is not None}
+        layer_of = {
+            layer.light.name: n for n, layer in enumerate(layers) if layer.light is not None
+        }
         self.glows = {
-            number[name]: np.stack([self.patches.means(part) for part in glow.T], axis=1)
+            layer_of[name]: np.stack([self.patches.means(part) for part in glow.T], axis=1)
             for name, glow in glows_of(geometry, texels, lit_by).items()
-            if name in number
+            if name in layer_of
         }
         self.irradiance = np.empty((len(self.patches.size), 3 * len(layers)), np.float32)
         self.direct = np.empty((len(self.patches.size), len(layers)), np.float32)
