@@ -1,4 +1,4 @@
-"""What shades and bulbs of lamps emit by the lights in them. From `Texels` to radiance."""
+"""Radiance of shades and bulbs of lamps by the lights in them. From `Texels` to arrays."""
 
 from __future__ import annotations
 
