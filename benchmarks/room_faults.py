@@ -24,13 +24,13 @@ STRUCTURE = ("wall", "floor", "ceiling")
 VIEWS = ("rgb", "instance", "normals", "albedo")
 
 
-def counted(name: str, views: int, output: Path | None) -> tuple[int, int, int]:
-    """Return how many pixels of dashes, how many squares of spots, and how many views have any."""
+def counted(name: str, views: int, output: Path | None) -> list[tuple[int, int]]:
+    """Return how many pixels of dashes and how many squares of spots each view has."""
     room = room_at_rest(name)
     categories = [drawn.instance.category for drawn in room.contents.instances]
     structure = room.contents.instance_ids[np.isin(categories, STRUCTURE)]
     renderer = NativeRenderer()
-    dark = bright = faulty = 0
+    found: list[tuple[int, int]] = []
     try:
         cameras = plausible_views(room, renderer, f"spots{name}", width=1024, height=768)
         for number, camera in enumerate(itertools.islice(cameras, views)):
@@ -39,8 +39,7 @@ def counted(name: str, views: int, output: Path | None) -> tuple[int, int, int]:
             surfaces = surfaces_of(seen["instance"], seen["normals"], plain)
             lines = dashes(seen["rgb"], seen["albedo"], surfaces)
             spots = bright_spots(seen["rgb"], seen["albedo"], surfaces)
-            dark, bright = dark + len(lines), bright + len(spots)
-            faulty += bool(len(lines) or len(spots))
+            found.append((len(lines), len(spots)))
             if output is not None:
                 picture = np.ascontiguousarray(seen["rgb"][..., ::-1])
                 picture[tuple(lines.T)] = 0, 0, 255
@@ -50,7 +49,7 @@ def counted(name: str, views: int, output: Path | None) -> tuple[int, int, int]:
                 cv2.imwrite(str(output / f"{name.replace(':', '_')}_{number:02}.png"), picture)
     finally:
         renderer.close()
-    return dark, bright, faulty
+    return found
 
 
 def main() -> None:
@@ -63,9 +62,12 @@ def main() -> None:
     if args.output is not None:
         args.output.mkdir(parents=True, exist_ok=True)
     for name in args.scenes:
-        dark, bright, faulty = counted(name, args.views, args.output)
+        found = counted(name, args.views, args.output)
+        dark, bright = (sum(column) for column in zip(*found, strict=True))
+        faulty, worst = sum(map(any, found)), max(dashes for dashes, _ in found)
         print(
-            f"{name}: dashes {dark} px, spots {bright} squares, in {faulty} of {args.views} views"
+            f"{name}: dashes {dark} px, at most {worst} in a view; spots {bright} squares; "
+            f"in {faulty} of {len(found)} views"
         )
 
 

@@ -38,6 +38,7 @@ def environment_entry(rule: LightRule, dice: RandomStream) -> dict[str, Any]:
         "sky_horizon": list(rule.sky_horizon),
         "sky_ground": list(rule.sky_ground),
         "exposure": round(dice.between(rule.exposure), 2),
+        "meter_exposure": True,
     }
     return entry
 

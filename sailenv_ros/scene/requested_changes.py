@@ -43,6 +43,7 @@ class EnvironmentChanges(TypedDict, total=False):
     sky_blend: bool
     outside_factor: float
     exposure: float
+    meter_exposure: bool
 
 
 class MaterialChanges(TypedDict, total=False):

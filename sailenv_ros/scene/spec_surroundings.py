@@ -87,10 +87,25 @@ class EnvironmentSpec(SceneModel):
         default=_STANDARD.exposure,
         description="the picture is brightened by 2 to the power of it [stops]",
     )
+    meter_exposure: Annotated[bool, Switch()] = Field(
+        default=False,
+        description="true: in baked light `exposure` is lowered as far as highlights need, so that "
+        "they are not white; a room without `exposure` has a measured one",
+    )
+
+    @property
+    def is_metered(self) -> bool:
+        """Whether the exposure depends on what is measured in baked light."""
+        return self.meter_exposure or self.wanted_exposure is None
+
+    @property
+    def wanted_exposure(self) -> float | None:
+        """The exposure that the entry names [stops], None if it leaves that to a meter."""
+        return self.exposure if "exposure" in self.model_fields_set else None
 
     def to_environment(self) -> Environment:
         """Return the data type that the renderer takes."""
-        return Environment(**self.model_dump())
+        return Environment(**self.model_dump(exclude={"meter_exposure"}))
 
 
 class _LightBase(SceneModel):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.light_files import light_folder, load_baked, store_baked
 from sailenv_ros.light.bake.pipeline import bake
+from sailenv_ros.simulation.room_exposure import take_light
 from sailenv_ros.system.files import file_lock
 from sailenv_ros.world.world import World
 
@@ -39,4 +40,4 @@ def bake_missing(world: World) -> None:
         if baked is None:
             baked = bake(snapshot)
             store_baked(baked)
-    world.set_baked(baked)
+    take_light(world, baked)

@@ -10,6 +10,7 @@ import logging
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.light_files import load_baked, load_draft
+from sailenv_ros.simulation.room_exposure import take_light
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.world.world import World
 
@@ -73,7 +74,7 @@ class LightCache:
             elif self._last is None and before is not None and before.fingerprint == name:
                 self._last, self._is_draft = before, True
         if self._last is not None:
-            world.set_baked(self._last)
+            take_light(world, self._last)
             return
         if self._required:
             raise InvalidState(

@@ -8,7 +8,7 @@ intensity changes changes the picture without baking again.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -182,6 +182,9 @@ class BakedLight:
     layers : tuple of LightLayer
         The surroundings first, then the lights in the scene's order.
     probes : ProbeGrid
+    seen : (K, L, 3) float16
+        Radiance of points that eyes in the room see, in all directions but steeply up and down,
+        by the light of each layer; not what lies behind glass. For exposure meters.
     environment : Environment or None
         The surroundings as the scene has them of itself; None until a world takes the bake.
     checksum : str
@@ -192,5 +195,6 @@ class BakedLight:
     charts: Mapping[int, LightChart]
     layers: tuple[LightLayer, ...]
     probes: ProbeGrid
+    seen: NDArray[np.float16] = field(default_factory=lambda: np.zeros((0, 0, 3), np.float16))
     environment: Environment | None = None
     checksum: str = ""

@@ -13,7 +13,7 @@ import pytest
 from sailenv_ros import Simulation
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.render.contract import RenderBackend
-from sailenv_ros.render.picture.auto_exposure import MAX_STOPS
+from sailenv_ros.render.picture.auto_exposure import HIGHLIGHT, MAX_STOPS
 from sailenv_ros.types.bayer import BLACK_LEVEL, WHITE_LEVEL
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import Pose
@@ -24,6 +24,13 @@ from tests.support.tiny_scenes import Thing, camera_at, model_of, snapshot_of, w
 
 AUTOMATIC = PictureSettings(tone_curve="linear", auto_exposure_s=0.5)
 WEIGHTS = (0.2126, 0.7152, 0.0722)
+BLACK = Environment(
+    background="colour",
+    background_colour=(0, 0, 0),
+    sky_zenith=(0, 0, 0),
+    sky_horizon=(0, 0, 0),
+    sky_ground=(0, 0, 0),
+)
 SPAN = WHITE_LEVEL - BLACK_LEVEL
 
 
@@ -63,17 +70,39 @@ def test_the_first_picture_is_of_middle_grey(
         np.testing.assert_allclose(share, 0.18, rtol=2e-2 if luminance < 0.1 else 1e-3)
 
 
+def shining(radiance: float, side: float) -> Thing:
+    """Return a wall that fills the picture's left half or its right one, and shines."""
+    wall = model_of(wall_mesh(40.0, 40.0), base_colour=(0, 0, 0, 1), emission=(radiance,) * 3)
+    return Thing(wall, Pose((2.0, 20.0 * side, 0.0)))
+
+
+def dark(*things: Thing, sky: Environment = BLACK) -> WorldSnapshot:
+    """Return things without a light on them."""
+    return snapshot_of(things, environment=sky, lights=())
+
+
 def test_the_meter_takes_the_mean_of_logarithms(renderer: RenderBackend) -> None:
     """Half of the picture 64 times as bright: three stops, not six."""
-    wall = model_of(wall_mesh(40.0, 40.0), base_colour=(0, 0, 0, 1), emission=(16.0, 16.0, 16.0))
-    half = [Thing(wall, Pose((2.0, 20.0, 0.0)))]
-    environment = Environment(background="colour", background_colour=(0.25, 0.25, 0.25))
+    halves = [shining(16.0, 1.0), shining(0.25, -1.0)]
     camera = eye(replace(AUTOMATIC, occlusion_strength=0.0))
-    made = renderer.render(snapshot_of(half, environment=environment), None, camera, ("rgb",))
+    made = renderer.render(dark(*halves), None, camera, ("rgb",))
     assert made.adapted is not None
     mean = 0.5 * (math.log2(0.25 + 1e-4) + math.log2(16.0 + 1e-4))
     # The column in the middle may be of either.
     assert made.adapted.stops == pytest.approx(math.log2(0.18) - mean, abs=6.0 / 72)
+
+
+def test_highlights_are_protected_and_the_sky_does_not_count(renderer: RenderBackend) -> None:
+    """Half 1,024 times as bright would be white; a sky in its place changes nothing."""
+    camera = eye(replace(AUTOMATIC, occlusion_strength=0.0))
+    halves = [shining(16.0, 1.0), shining(2.0**-6, -1.0)]
+    made = renderer.render(dark(*halves), None, camera, ("rgb",))
+    assert made.adapted is not None
+    assert made.adapted.stops == pytest.approx(math.log2(HIGHLIGHT / (16.0 + 1e-4)), abs=1e-3)
+    sky = replace(BLACK, background_colour=(16.0, 16.0, 16.0))
+    made = renderer.render(dark(shining(0.25, 1.0), sky=sky), None, camera, ("rgb",))
+    assert made.adapted is not None
+    assert made.adapted.stops == pytest.approx(wanted(0.25), abs=0.2)
 
 
 def test_the_way_there_is_exponential(renderer: RenderBackend) -> None:

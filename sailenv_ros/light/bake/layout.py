@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.packing import packed
+from sailenv_ros.light.bake.packing import STEP, packed
 from sailenv_ros.light.bake.settings import BakeSettings
 from sailenv_ros.light.bake.unwrap import Chart, unwrapped
 from sailenv_ros.rays.static_geometry import StaticGeometry, StaticInstance
@@ -28,10 +28,16 @@ MOST_TEXELS = 50_000
 """Greatest number of texels of a model of many triangles, unless its texels are as large as they
 may be."""
 
+MOST_LIT = 12_000_000
+"""Greatest number of texels times layers of light: 8 bytes each, some 100 MB."""
+
 TRIALS = 8
 
 COARSER = 1.15
 """Growth of the texels until everything fits."""
+
+COARSEST = 4.0
+"""Growth of the texels up to which it is for the sake of `MOST_LIT`."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -59,20 +65,26 @@ def laid_out(
     settings: BakeSettings,
     visible_triangles: NDArray[np.bool_],
     report: Callable[[float], None] = lambda share: None,
+    *,
+    layers: int = 1,
 ) -> Layout:
     """Unwrap all models and pack their charts.
 
     Parameters
     ----------
+    layers : int
+        Of light, one for each light and one for the surroundings.
     visible_triangles : (T,) bool
         Triangles that are seen at all.
     """
-    coarser = 1.0
+    coarser, few = 1.0, math.isqrt(MOST_LIT // layers) // STEP * STEP
     while True:
         charts = _unwrapped_models(geometry, settings, visible_triangles, coarser, report)
         own = [charts[instance.model] for instance in geometry.instances]
+        # Borders do not shrink with the texels: some scenes never fit into little memory.
+        most = min(settings.max_map, few) if coarser < COARSEST else settings.max_map
         # The border keeps neighbours' texels out of look-ups that rounding moves by a hair.
-        fit = packed([(chart.width + 1, chart.height + 1) for chart in own], settings.max_map)
+        fit = packed([(chart.width + 1, chart.height + 1) for chart in own], most)
         if fit is not None:
             break
         coarser *= COARSER

@@ -1,7 +1,8 @@
 """Keeps baked light in the user's cache, by fingerprint. From `BakedLight` to a file and back.
 
-A file is a line that names the format, a checksum of the rest, and NumPy's arrays as `np.savez`
-writes them. One that cannot be used counts as none: it is reported once and baked again.
+A file is a line that names the format, a checksum of the rest, and arrays, each coded by
+`array_coding`, as `np.savez` writes them. One that cannot be used counts as none: it is reported
+once and baked again.
 """
 
 from __future__ import annotations
@@ -12,8 +13,10 @@ import json
 import logging
 import os
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, suppress
 from dataclasses import asdict, replace
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -21,6 +24,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.bake.array_coding import LEVEL, QUICK_LEVEL, coded, decoded
+from sailenv_ros.native.library import thread_count
 from sailenv_ros.system.files import (
     file_lock,
     make_folder,
@@ -53,7 +58,7 @@ __all__ = [
     "store_draft",
 ]
 
-FORMAT = 4
+FORMAT = 5
 MAGIC = b"sailenv_ros baked light\n"
 DIGEST_BYTES = 32
 
@@ -95,19 +100,23 @@ def store_baked(baked: BakedLight) -> Path:
     DeadlineExceeded
         If another process kept writing to the folder.
     """
-    path = _stored(baked, baked_file(baked.fingerprint))
+    path = _stored(baked, baked_file(baked.fingerprint), LEVEL)
     path.with_suffix(DRAFT_SUFFIX).unlink(missing_ok=True)
     return path
 
 
 def store_draft(baked: BakedLight) -> Path:
     """Keep rough light until `store_baked` is called with the light itself; errors as of that."""
-    return _stored(baked, baked_file(baked.fingerprint).with_suffix(DRAFT_SUFFIX))
+    path = baked_file(baked.fingerprint).with_suffix(DRAFT_SUFFIX)
+    return _stored(baked, path, QUICK_LEVEL)
 
 
-def _stored(baked: BakedLight, path: Path) -> Path:
+def _stored(baked: BakedLight, path: Path, level: int) -> Path:
     arrays = io.BytesIO()
-    np.savez(arrays, allow_pickle=False, **_arrays_of(baked))
+    given = _arrays_of(baked)
+    with ThreadPoolExecutor(thread_count()) as pool:
+        few = dict(zip(given, pool.map(partial(coded, level=level), given.values()), strict=True))
+    np.savez(arrays, allow_pickle=False, **few)
     payload = arrays.getbuffer()
     with storage_errors("the baked light", path), _lock():
         remove_unfinished(path.parent)
@@ -134,8 +143,11 @@ def _loaded(path: Path, fingerprint: str) -> BakedLight | None:
         return None
     try:
         payload, checksum = _payload(path)
-        with np.load(io.BytesIO(payload), allow_pickle=False) as arrays:
-            baked = replace(_baked_of(arrays), checksum=checksum.hex())
+        with np.load(io.BytesIO(payload), allow_pickle=False) as file:
+            few = dict(file)
+        with ThreadPoolExecutor(thread_count()) as pool:
+            arrays = dict(zip(few, pool.map(decoded, few.values()), strict=True))
+        baked = replace(_baked_of(arrays), checksum=checksum.hex())
         if baked.fingerprint != fingerprint:
             raise ValueError("it was made for another scene")
     except Exception as problem:  # whatever a damaged file leads to: the light is baked anew
@@ -248,6 +260,7 @@ def _arrays_of(baked: BakedLight) -> dict[str, NDArray[Any]]:
             for instance, chart in baked.charts.items()
         },
     }
+    arrays["seen"] = baked.seen
     arrays["description"] = np.frombuffer(json.dumps(description).encode(), dtype=np.uint8)
     return arrays
 
@@ -291,6 +304,7 @@ def _baked_of(arrays: Mapping[str, NDArray[Any]]) -> BakedLight:
         },
         layers=tuple(layers),
         probes=ProbeGrid(**_with_tuples(description["probes"])),
+        seen=_frozen(arrays["seen"]),
     )
 
 

@@ -32,6 +32,18 @@ __all__ = [
 
 Floats = NDArray[np.float32]
 
+EYES_M = (0.8, 1.9)
+"""Lowest and highest probe at the height of eyes above the lowest one of all [m]."""
+
+LEVEL = 0.6
+"""Sine of the angle to the horizon up to which pictures show what is around."""
+
+CLEAR = 0.99
+"""Share of the light that passes where there is no glass."""
+
+MOST_SEEN = 16384
+"""Greatest number of points that are remembered for exposure meters."""
+
 
 def probe_grid(bounds: NDArray[np.float64], settings: BakeSettings) -> ProbeGrid:
     """Lay a grid over a box."""
@@ -85,6 +97,25 @@ class ProbeViews:
         self.texels[first:end] = texels.reshape(count, rays)
         clear = around.transmittance(texels, origins, directions)
         self.clear[first:end] = clear.reshape(count, rays)
+
+    def level(self, positions: Floats, useful: NDArray[np.bool_]) -> NDArray[np.int32]:
+        """Return (K,) int32: texels that eyes see, at the height of eyes, in level directions.
+
+        Nothing behind glass. The lowest probe stands on the floor.
+
+        Parameters
+        ----------
+        positions : (N, 3) float32
+        useful : (N,) bool
+            Probes in the air of a room.
+        """
+        up = positions[:, 2] - positions[:, 2].min()
+        eyes = useful & (up >= EYES_M[0]) & (up <= EYES_M[1])
+        rays = np.abs(self.directions[:, 2]) <= LEVEL
+        texels = self.texels[np.ix_(eyes, rays)]
+        found = texels[(texels >= 0) & (self.clear[np.ix_(eyes, rays)] > CLEAR)]
+        step = -(-len(found) // MOST_SEEN) or 1
+        return np.ascontiguousarray(found[::step])
 
 
 def probe_light(views: ProbeViews, radiance: Floats, sky: SkyWindows, workers: int = 1) -> Floats:

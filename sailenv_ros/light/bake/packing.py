@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["packed"]
+__all__ = ["STEP", "packed"]
 
 STEP = 64
 """The square's side is a multiple of it."""

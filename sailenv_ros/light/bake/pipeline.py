@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.bake.array_coding import rounded
 from sailenv_ros.light.bake.back_to_back import back_to_back_faces
 from sailenv_ros.light.bake.bounces import Patches, patches_of
 from sailenv_ros.light.bake.denoise import denoised, dilated
@@ -20,6 +21,7 @@ from sailenv_ros.light.bake.emitters import emitters_of
 from sailenv_ros.light.bake.facing import lit_texels
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.gather import Surroundings
+from sailenv_ros.light.bake.lamp_glow import glows_of
 from sailenv_ros.light.bake.layout import laid_out
 from sailenv_ros.light.bake.light_probes import (
     ProbeViews,
@@ -30,18 +32,17 @@ from sailenv_ros.light.bake.light_probes import (
     straight_light,
 )
 from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
-from sailenv_ros.light.bake.reflectance import albedo_of, emission_of, glow_of
+from sailenv_ros.light.bake.reflectance import albedo_of, emission_of
 from sailenv_ros.light.bake.sampling import tile_shift
 from sailenv_ros.light.bake.settings import BakeSettings, drafted
 from sailenv_ros.light.bake.sky import panes
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.bake.solving import Samples, SolvedLight, Solver, Stages
 from sailenv_ros.light.bake.sun_edges import sun_edges
-from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.light.bake.visibility import probe_visibility, visible_triangles
 from sailenv_ros.native.bake_types import SkyWindows
 from sailenv_ros.rays.light_rays import NEVER, RayScene
-from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
+from sailenv_ros.rays.static_geometry import static_geometry_of
 from sailenv_ros.types.baked_light import BakedLight, LightLayer, SunEdges
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import WorldSnapshot
@@ -129,11 +130,14 @@ class _Bake:
         stages.begin("visibility", 0.02)
         self._visibility = probe_visibility(geometry, scene, self._spots, settings.probe_rays)
         visible = visible_triangles(geometry, self._visibility.seen)
-        layout = laid_out(geometry, settings, visible, stages.begin("surfaces", 0.14))
+        layout = laid_out(
+            geometry, settings, visible, stages.begin("surfaces", 0.14),
+            layers=1 + len(contents.lights),
+        )  # fmt: skip
         texels = lit_texels(geometry, scene, layout, stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
         emission = emission_of(geometry, layout, texels)
-        glows = self._glows(geometry, texels)
+        glows = glows_of(geometry, texels, {d.instance.id: d.lit_by for d in contents.instances})
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,
@@ -169,16 +173,6 @@ class _Bake:
             owner=geometry.owner[texels.triangle],
         )
 
-    def _glows(self, geometry: StaticGeometry, texels: Texels) -> dict[str, Floats]:
-        """Return what the shades of lamps emit by each light that is in one."""
-        lamps: dict[str, list[int]] = {}
-        lit_by = {d.instance.id: d.lit_by for d in self._snapshot.contents.instances}
-        for place, instance in enumerate(geometry.instances):
-            for name in lit_by[instance.id]:
-                lamps.setdefault(name, []).append(place)
-        found = {name: glow_of(geometry, texels, places) for name, places in lamps.items()}
-        return {name: glow for name, glow in found.items() if glow.any()}
-
     def _draft(self, samples: Samples) -> BakedLight:
         """Return the light as one texel of each patch gets it, spread over the patch."""
         texels, of_texel = self._texels, samples.patches.of_texel
@@ -200,9 +194,9 @@ class _Bake:
         )  # fmt: skip
         solver = Solver(few, self._snapshot.contents.lights, drafted(self._settings), self._stages)
         solver.begin()
-        tiles = _tiles(texels, chosen)
+        tiles = texels.tiles(chosen)
         # Of patches that share a tile one is averaged: what is at edges stays as it is.
-        alone = np.bincount(_places_of(tiles), minlength=1)[_places_of(tiles)] == 1
+        alone = np.bincount(tiles.places, minlength=1)[tiles.places] == 1
         for _ in range(DRAFT_SMOOTHING):
             # Few rays leave blotches, which are wider than what texels are averaged over.
             smooth = denoised(
@@ -302,7 +296,14 @@ class _Bake:
             charts=self._layout.charts,
             layers=tuple(layers),
             probes=grid,
+            seen=self._seen(solver, of_texel),
         )
+
+    def _seen(self, solver: Solver, of_texel: NDArray[np.int32] | None) -> NDArray[np.float16]:
+        """Return (K, L, 3): the radiance that eyes see."""
+        texels = self._views.level(self._spots, self._visibility.useful)
+        seen = solver.radiance[texels if of_texel is None else of_texel[texels]]
+        return seen.reshape(len(texels), len(solver.lights), 3).astype(np.float16)
 
     def _sun_edges(self, entry: SolvedLight, valid: NDArray[np.bool_]) -> SunEdges:
         """Return where a directional light's shadows end; found once for all results."""
@@ -320,31 +321,8 @@ class _Bake:
         texels = self._texels
         result: NDArray[Any] = np.zeros((*texels.index.shape, *values.shape[1:]), dtype=kind)
         result[texels.rows, texels.columns] = values
-        return result
+        return rounded(result) if kind is np.float16 else result
 
 
 def _is_soft(entry: SolvedLight) -> bool:
     return entry.light is not None and entry.light.type == "area"
-
-
-def _tiles(texels: Texels, chosen: NDArray[np.intp]) -> Texels:
-    """Return some texels, one for each tile of 4 by 4, as those of a map of a quarter the size."""
-    rows, columns = texels.rows[chosen] // 4, texels.columns[chosen] // 4
-    index = np.full((texels.index.shape[0] // 4 + 1,) * 2, -1, np.int32)
-    index[rows, columns] = np.arange(len(chosen))
-    return Texels(
-        index=index,
-        rows=rows,
-        columns=columns,
-        triangle=texels.triangle[chosen],
-        weights=texels.weights[chosen],
-        positions=texels.positions[chosen],
-        normals=texels.normals[chosen],
-        faces=texels.faces[chosen],
-    )
-
-
-def _places_of(texels: Texels) -> NDArray[np.int64]:
-    """Return (N,) the number of each texel's place in the map."""
-    places: NDArray[np.int64] = texels.rows.astype(np.int64) * texels.index.shape[1]
-    return places + texels.columns

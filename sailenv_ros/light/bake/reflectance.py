@@ -6,8 +6,6 @@ everywhere, too: the amount is right, the direction is the mean one. Normal maps
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +17,7 @@ from sailenv_ros.rays.static_geometry import StaticGeometry
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 from sailenv_ros.types.model import Material
 
-__all__ = ["albedo_of", "emission_of", "glow_of", "returned"]
+__all__ = ["albedo_of", "emission_of", "returned"]
 
 BRIGHTEST = 0.95
 """No surface gives back more: bounces would not end."""
@@ -41,21 +39,6 @@ def emission_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDA
             fineness = _texture_texels(geometry, layout) if fineness is None else fineness
             emission[chosen] *= _picture_at(geometry, texels, chosen, look, fineness)
     return emission
-
-
-def glow_of(geometry: StaticGeometry, texels: Texels, owners: Iterable[int]) -> NDArray[np.float32]:
-    """Return (N, 3) float32: what texels of lamps emit for 1 W/sr of white light.
-
-    Parameters
-    ----------
-    owners : iterable of int
-        Places in `geometry.instances` of the lamps that are on by it.
-    """
-    table = np.zeros((len(geometry.materials) + 1, 3), dtype=np.float32)
-    for place, material in enumerate(geometry.materials):
-        table[place] = material.glow
-    own = np.isin(geometry.owner[texels.triangle], np.fromiter(owners, np.int64))
-    return table[geometry.material[texels.triangle]] * own[:, None]
 
 
 def albedo_of(geometry: StaticGeometry, layout: Layout, texels: Texels) -> NDArray[np.float32]:

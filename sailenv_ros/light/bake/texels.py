@@ -61,6 +61,28 @@ class Texels:
         """Number of texels."""
         return len(self.triangle)
 
+    @property
+    def places(self) -> NDArray[np.int64]:
+        """(N,) int64: the number of each texel's place in the map."""
+        places: NDArray[np.int64] = self.rows.astype(np.int64) * self.index.shape[1]
+        return places + self.columns
+
+    def tiles(self, chosen: NDArray[np.intp]) -> Texels:
+        """Return some texels, one for each tile of 4 by 4, as those of a map a quarter the size."""
+        rows, columns = self.rows[chosen] // 4, self.columns[chosen] // 4
+        index = np.full((self.index.shape[0] // 4 + 1,) * 2, -1, np.int32)
+        index[rows, columns] = np.arange(len(chosen))
+        return Texels(
+            index=index,
+            rows=rows,
+            columns=columns,
+            triangle=self.triangle[chosen],
+            weights=self.weights[chosen],
+            positions=self.positions[chosen],
+            normals=self.normals[chosen],
+            faces=self.faces[chosen],
+        )
+
     def of_map(self, owners: NDArray[np.int32]) -> TexelMap:
         """Return what filters over the map need; `owners`, (N,) int32, tells surfaces apart."""
         return TexelMap(

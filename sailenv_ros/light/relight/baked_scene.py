@@ -6,7 +6,7 @@ moves first. Knows no change.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.bounces import patches_of
 from sailenv_ros.light.bake.facing import lit_texels
+from sailenv_ros.light.bake.lamp_glow import glows_of
 from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
@@ -94,6 +95,8 @@ class BakedScene:
         Means of the layers' bounced light, the three colours of each layer in turn.
     direct : (P, L) float32
         Means of the layers' direct light.
+    glows : dict of int to (P, 3) float32
+        What shades of lamps emit, for white light of intensity 1, by the layer of that light.
     sent : (P, C) float32
         What patches send out by these; see `radiance`.
     brightest : float
@@ -115,7 +118,7 @@ class BakedScene:
         self.side = len(baked.layers[0].direct)
         geometry = static_geometry_of(_as_baked(baked, contents, tuple(self.drawn.values())))
         self.materials = geometry.materials
-        self._lay_out(geometry, threads)
+        self._lay_out(geometry, threads, {d.instance.id: d.lit_by for d in self.drawn.values()})
         self.panes = glass_of(geometry)
         self.sky = np.ascontiguousarray(sky_picture(contents.environment), np.float32)
         with ThreadPoolExecutor(max(threads, 1)) as pool:
@@ -181,9 +184,13 @@ class BakedScene:
         light = irradiance.reshape(-1, layers, 3) + direct[:, :, None]
         radiance = light * albedo[:, None, :]
         radiance[:, 0] += self.patches.emission if emission is None else emission
+        for number, glow in self.glows.items():
+            radiance[:, number] += glow
         return np.ascontiguousarray(radiance.reshape(len(direct), -1), np.float32)
 
-    def _lay_out(self, geometry: StaticGeometry, threads: int) -> None:
+    def _lay_out(
+        self, geometry: StaticGeometry, threads: int, lit_by: Mapping[int, Iterable[str]]
+    ) -> None:
         layout = Layout(side=self.side, charts={}, places=self._places(geometry))
         texels = lit_texels(geometry, RayScene(geometry), layout, max(threads, 1))
         ids = np.array([instance.id for instance in geometry.instances], np.int32)
@@ -193,6 +200,14 @@ class BakedScene:
         self.owners = ids[geometry.owner[texels.triangle]]
         self.patches = self._patches(geometry, texels)
         layers = self.baked.layers
+        layer_of = {
+            layer.light.name: n for n, layer in enumerate(layers) if layer.light is not None
+        }
+        self.glows = {
+            layer_of[name]: np.stack([self.patches.means(part) for part in glow.T], axis=1)
+            for name, glow in glows_of(geometry, texels, lit_by).items()
+            if name in layer_of
+        }
         self.irradiance = np.empty((len(self.patches.size), 3 * len(layers)), np.float32)
         self.direct = np.empty((len(self.patches.size), len(layers)), np.float32)
         for number, layer in enumerate(layers):

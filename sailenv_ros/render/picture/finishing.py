@@ -96,7 +96,9 @@ class DrawingRenderer(ABC):
             if light is None:
                 light = self._light_of(now, arrays, surface)
             light = self._post.through_lens(light, camera)
-            adapted = self._post.adapted(light, snapshot, camera, adapted)
+            if camera.picture.auto_exposure_s:
+                light = Light(self._post.at_sensor(light))
+                adapted = self._post.adapted(light, snapshot, camera, surface, adapted)
             taken = with_exposure(camera, adapted)
             if "rgb" in wanted:
                 arrays["rgb"] = self._post.developed(light, snapshot, taken)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.render.picture import ambient_occlusion, supersampling, tone_map
-from sailenv_ros.render.picture.auto_exposure import followed, metered_exposure
+from sailenv_ros.render.picture.auto_exposure import followed, picture_exposure
 from sailenv_ros.render.picture.optics import through_lens
 from sailenv_ros.render.picture.raw_data import raw_data
 from sailenv_ros.render.picture.sensor import sensor_light
@@ -115,14 +115,18 @@ class PostPass:
         light: Light,
         snapshot: WorldSnapshot,
         camera: Camera,
+        surface: NDArray[np.float32],
         before: AdaptedExposure | None,
-    ) -> AdaptedExposure | None:
-        """Return the automatic exposure for this light; None where it is off."""
-        time_constant_s = camera.picture.auto_exposure_s
-        if not time_constant_s:
-            return None
-        wanted = metered_exposure(self.at_sensor(light))
-        return followed(before, wanted, snapshot.sim_time_ns, time_constant_s)
+    ) -> AdaptedExposure:
+        """Return the automatic exposure for light that has lost what occlusion takes away.
+
+        Parameters
+        ----------
+        surface : (H, W, 2) float32
+            What is seen through windows does not count.
+        """
+        wanted = picture_exposure(light.radiance, _inside(surface, snapshot))
+        return followed(before, wanted, snapshot.sim_time_ns, camera.picture.auto_exposure_s)
 
     def developed(self, light: Light, snapshot: WorldSnapshot, camera: Camera) -> NDArray[np.uint8]:
         """Return (H, W, 3) uint8: the sRGB picture of light; a fresh array."""
@@ -160,6 +164,15 @@ class PostPass:
         if not (settings.lateral_colour or settings.vignetting or settings.dirt):
             return light
         return Light(through_lens(self.at_sensor(light), camera.intrinsics, settings))
+
+
+def _inside(surface: NDArray[np.float32], snapshot: WorldSnapshot) -> NDArray[np.bool_]:
+    """Return (H, W) bool: where neither the sky is seen nor what lies outside of a room."""
+    contents = snapshot.contents
+    outside = np.zeros(65536, np.bool_)
+    outside[contents.instance_ids[[one.outside is not None for one in contents.instances]]] = True
+    inside: NDArray[np.bool_] = ~outside[surface[..., 1].astype(np.uint16)]
+    return inside & np.isfinite(surface[..., 0])
 
 
 def _from_jpeg(rgb: NDArray[np.uint8], quality: int) -> NDArray[np.uint8]:

@@ -24,6 +24,7 @@ from sailenv_ros.simulation.editing.material_edits import (
 from sailenv_ros.simulation.editing.saving import environment_entry
 from sailenv_ros.simulation.live_scene import LiveScene
 from sailenv_ros.simulation.robot_entries import robot_placement
+from sailenv_ros.simulation.room_exposure import meter
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.bodies import Body
@@ -210,10 +211,13 @@ class SceneEditor:
             if key not in EnvironmentSpec.model_fields:
                 raise UnknownName("key of environment", key, EnvironmentSpec.model_fields)
         entry = {**environment_entry(world), **plain_value(changes)}
+        if "exposure" in changes and "meter_exposure" not in changes:
+            entry.pop("meter_exposure", None)
         data = {"version": 1, "environment": entry}
         checked = checked_scene(data, library.knowledge, what="environment").environment
         world.set_environment(library.environment(checked))
         world.described = world.described.model_copy(update={"environment": checked})
+        meter(world)
         self.scene.announce()
 
 

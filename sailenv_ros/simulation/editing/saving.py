@@ -30,6 +30,7 @@ from sailenv_ros.simulation.agent_record import AgentRecord
 from sailenv_ros.simulation.agent_table import AgentTable
 from sailenv_ros.simulation.editing.saved_objects import object_entries
 from sailenv_ros.simulation.robot_entries import robot_entries
+from sailenv_ros.simulation.room_exposure import is_metered
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.rigs import body_of
 from sailenv_ros.world.jointed_bodies import JointedBody
@@ -118,10 +119,11 @@ def environment_entry(world: World) -> Entry:
     assert world.described is not None
     described = world.described.environment
     now = world.contents.environment
+    kept = {*_SKY_COLOURS, "meter_exposure", *(("exposure",) if is_metered(world) else ())}
     changes = {
         key: getattr(now, key)
         for key in EnvironmentSpec.model_fields
-        if key not in _SKY_COLOURS and getattr(now, key) != getattr(described, key)
+        if key not in kept and getattr(now, key) != getattr(described, key)
     }
     entry: Entry = described.model_copy(update=changes).model_dump(mode="json", exclude_unset=True)
     return entry

@@ -400,6 +400,7 @@ export interface EnvironmentChanges {
   sky_blend?: boolean;
   outside_factor?: number;
   exposure?: number;
+  meter_exposure?: boolean;
 }
 
 /** Everything that can be changed of a light, by its names in `Light`. */

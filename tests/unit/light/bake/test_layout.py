@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sailenv_ros.light.bake.back_to_back import back_to_back_faces
-from sailenv_ros.light.bake.layout import laid_out
+from sailenv_ros.light.bake.layout import MOST_LIT, laid_out
 from sailenv_ros.light.bake.packing import packed
 from sailenv_ros.light.bake.texels import rasterised
 from sailenv_ros.light.bake.unwrap import unwrapped
@@ -55,6 +57,19 @@ def test_look_ups_meet_their_own_texels_alone() -> None:
             index = texels.index[row, column]
             assert (index >= 0).all()
             assert (owner[index] == geometry.owner[triangle]).all()
+
+
+def test_many_lights_make_texels_larger() -> None:
+    """All layers together have a limit, which is passed only by what cannot be any smaller."""
+    geometry = static_geometry_of(still([Thing(ground(8.0))]))
+    seen = np.ones(geometry.triangle_count, dtype=bool)
+    fine = replace(COARSE, texel_m=0.005)
+    assert laid_out(geometry, fine, seen).side > 1600
+    for layers in (9, 20):
+        side = laid_out(geometry, fine, seen, layers=layers).side
+        assert side * side * layers <= MOST_LIT
+        assert 1.5 * side * side * layers > MOST_LIT
+    assert laid_out(geometry, fine, seen, layers=MOST_LIT // 64).side > 64
 
 
 def test_a_model_keeps_its_triangles() -> None:

@@ -90,6 +90,27 @@ def within(points: np.ndarray, radius: float) -> np.ndarray:
     return np.asarray((np.abs(points[:, 2]) < 1e-3) & (far < radius))
 
 
+def test_a_glowing_shade_lights_what_a_move_uncovers() -> None:
+    """A lamp that shines through its shade alone lights the floor where a chest stood."""
+    at = (-1.6, -1.2, 2.2)
+    shade = model_of(box_mesh(0.4), base_colour=(0.0, 0.0, 0.0, 1.0), glow=(3.0, 2.0, 1.0))
+    lamp = Light(name="lamp", type="point", position_m=at)
+
+    def lit_room(chest: Pose) -> WorldSnapshot:
+        things = [ROOM, Thing(CHEST, chest), Thing(shade, Pose(at), lit_by=("lamp",))]
+        return still(things, lights=(lamp,), environment=Environment())
+
+    settings = replace(COARSE, texel_m=0.1)
+    before, after = lit_room(HERE), lit_room(THERE)
+    scene = BakedScene(bake(before, settings=settings), before.contents, 2)
+    got, anew = moved(scene), bake(after, settings=settings)
+    points, mine = read(got, 1, after, got.layers[1].bounced)
+    _, expected = read(anew, 1, after, anew.layers[1].bounced)
+    near = within(points, 0.5)
+    assert expected[near].mean() > 0.02
+    assert mine[near].mean(axis=0) == pytest.approx(expected[near].mean(axis=0), rel=0.05)
+
+
 def test_no_ghost_is_left(scene: BakedScene, anew: BakedLight) -> None:
     """The floor under the chest was dark; now it has the light that it would have had."""
     snapshot = room(THERE)
