@@ -22,6 +22,7 @@ from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.camera_tracks import Track, place_cameras, track_of, turning
 from sailenv_ros.dataset.findings import Findings
 from sailenv_ros.dataset.frame_sink import FrameSink
+from sailenv_ros.dataset.formats.formats import format_class
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
 from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, MountedCamera, RuleCamera
@@ -38,6 +39,7 @@ from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.dataset.store import ResumableStore
 from sailenv_ros.errors import NoFreeSpace, UnknownName
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.language.scene_facts import SceneFacts
 from sailenv_ros.render.cpu.mesh_store import MeshStore
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import NativeRenderer
@@ -45,6 +47,7 @@ from sailenv_ros.render.cpu.texture_store import TextureStore
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import Share
 from sailenv_ros.simulation.finished_light import bake_missing
+from sailenv_ros.simulation.scene_facts import scene_facts
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.script.rule_places import look_lens
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
@@ -87,6 +90,7 @@ class ShardMaker:
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
         self._camera_data = [one.model_dump(mode="json") for one in self._recipe.cameras]
+        self._asks_facts = any(format_class(name).needs_facts for name in job.recipe.formats)
         self._findings = Findings()
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
         # What is drawn of furniture serves all scenes that have it, and what a room mirrors all
@@ -211,8 +215,12 @@ class ShardMaker:
             if number:
                 core.step(step - self._due[number - 1])
             place_cameras(recipe.cameras, tracks, number, core)
+            facts: SceneFacts | None = None
             for camera in recipe.cameras:
                 frame = core.capture(recipe.views, agent=_agent_name(camera))
+                if self._asks_facts:
+                    facts = scene_facts(core) if facts is None else facts
+                    frame = replace(frame, facts=facts)
                 self._findings.look_at(frame, scene)
                 writer.add(camera.name, self._kept(frame, camera))
                 frames += 1
