@@ -18,7 +18,7 @@ import json
 import sys
 from pathlib import Path
 
-CAMERAS = 6
+CAMERAS = 20
 KINDS = ("kitchen", "office", "living_room", "bedroom", "bathroom")
 SIZE = {"width": 640, "height": 480}
 
@@ -42,7 +42,9 @@ def write(folder: Path, rooms: int) -> None:
             rng = np.random.default_rng(number)
             first = AgentSpec(name="camera_0", intrinsics=lens, following=False)
             with Simulation(name, mode="lockstep", light="plain", agent=first) as simulation:
-                views = simulation.sample_cameras("room_view", CAMERAS, agent="camera_0", seed=number)
+                views = simulation.sample_cameras(
+                    "room_view", CAMERAS, agent="camera_0", seed=number
+                )
                 for place, view in enumerate(views):
                     if place:
                         spec = dataclasses.replace(first, name=f"camera_{place}")
@@ -59,8 +61,10 @@ def write(folder: Path, rooms: int) -> None:
                     for place in range(len(views)):
                         agent = f"camera_{place}"
                         frame = simulation.capture(("rgb", "instance", "albedo"), agent=agent)
-                        _ = frame.amodal
-                        told = dataclasses.replace(frame, facts=facts)
+                        _ = frame.amodal  # drawn now, as the simulation ends before it is written
+                        told = dataclasses.replace(
+                            frame, facts=facts, draw_amodal=frame.amodal_source
+                        )
                         found.append((place, instant, told, file, agent))
             for _, _, frame, file, agent in sorted(found, key=lambda one: one[:2]):
                 writer.add(frame)

@@ -6,7 +6,7 @@ import json
 import math
 import re
 from collections import Counter, defaultdict
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,20 @@ from scipy import ndimage
 NEAR_M, CELL_M = 0.5, 0.05
 WORDS = {"wood": "oak|walnut|beech|birch|teak|cherry|ash|pine|wenge|mahogany", "fabric": "fabric",
          "metal": "chrome|steel|brass|copper|bronze|alu", "leather": "leather", "glass": "glass"}  # fmt: skip
-NO_THINGS = set("wall floor ceiling skirting window door curtain outside plane unlabelled".split())
+NO_THINGS = set(
+    [
+        "wall",
+        "floor",
+        "ceiling",
+        "skirting",
+        "window",
+        "door",
+        "curtain",
+        "outside",
+        "plane",
+        "unlabelled",
+    ]
+)
 
 
 class Room:
@@ -40,9 +53,11 @@ class Room:
         names = {f"category {c}": bytes(self.m.text_data[a:a + n - 1]).decode()
                  for c in range(1 << 9) for k in [mj.mj_name2id(self.m, mj.mjtObj.mjOBJ_TEXT, f"category {c}")]
                  if k >= 0 for a, n in [(self.m.text_adr[k], self.m.text_size[k])]}  # fmt: skip
-        self.category = {int(i): names[f"category {int(c)}"] for i, c in self.m.geom_user[:, :2] if i}
+        self.category = {
+            int(i): names[f"category {int(c)}"] for i, c in self.m.geom_user[:, :2] if i
+        }
 
-    @lru_cache(maxsize=None)  # noqa: B019 - one room at a time
+    @cache  # noqa: B019 - one room at a time
     def whole(self, id_: int) -> int:
         """The object that something is a part of: by its mask, or by what carries its body."""
         if self.parents.get(id_):
@@ -87,7 +102,9 @@ class Room:
         for g in (g for i in self.all(id_) for g in self.geoms[2][i]):
             k, name = self.m.geom_dataid[g], self.m.material(self.m.geom_matid[g]).name
             first, count = self.m.mesh_faceadr[k], self.m.mesh_facenum[k]
-            own = self.m.mesh_vert[self.m.mesh_vertadr[k]:][self.m.mesh_face[first:first + count]]
+            own = self.m.mesh_vert[self.m.mesh_vertadr[k] :][
+                self.m.mesh_face[first : first + count]
+            ]
             area = np.linalg.norm(np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0]), axis=1)
             word = next((w for w, names in WORDS.items()
                          if re.match(rf"(light_|black_)?({names})(_|$)", name)), "")  # fmt: skip
@@ -103,7 +120,7 @@ class Room:
             found.append(own @ self.d.geom_xmat[g].reshape(3, 3).T + self.d.geom_xpos[g])
         return np.concatenate(found)
 
-    @lru_cache(maxsize=None)  # noqa: B019 - one room at a time
+    @cache  # noqa: B019 - one room at a time
     def box(self, id_: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Middle, axes and size of its box; lowest and highest point."""
         turn = self.d.xmat[self.body[id_]].reshape(3, 3)
@@ -129,7 +146,7 @@ class Room:
                 return True
         return False
 
-    @lru_cache(maxsize=None)  # noqa: B019 - one room at a time
+    @cache  # noqa: B019 - one room at a time
     def space(self, radius: float) -> tuple[np.ndarray, np.ndarray]:
         """Cells in which an upright cylinder touches nothing and is above a floor; their corner."""
         solid = [g for own in self.geoms[3].values() for g in own]
@@ -182,7 +199,9 @@ class Room:
             below, above = points[points[:, 2] < z], points[points[:, 2] > z]
             if len(below) and len(above):
                 t = (z - below[:, None, 2]) / (above[None, :, 2] - below[:, None, 2])
-                cut.append((below[:, None] + t[..., None] * (above - below[:, None])).reshape(-1, 3))
+                cut.append(
+                    (below[:, None] + t[..., None] * (above - below[:, None])).reshape(-1, 3)
+                )
         return _hull(np.concatenate([inside, *cut])[:, :2])
 
 
@@ -220,7 +239,7 @@ class Picture:
         self.forward = -room.d.cam_xmat[number].reshape(3, 3)[:, 2]
         self.of: dict[int, list[dict[str, Any]]] = defaultdict(list)
         for one in notes:
-            if room.category[one["instance_id"]] not in NO_THINGS:
+            if room.category.get(one["instance_id"], "outside") not in NO_THINGS:
                 self.of[room.whole(one["instance_id"])].append(one)
 
     def like(self, category: str) -> list[int]:
@@ -254,10 +273,12 @@ class Picture:
         return np.where(regions == regions[at], off, np.inf) if free[at] else off + np.inf, free, at
 
 
-def agrees(one: dict[str, Any], now: Picture, before: Picture | None, meant: dict[str, int]) -> bool:
+def agrees(
+    one: dict[str, Any], now: Picture, before: Picture | None, meant: dict[str, int]
+) -> bool:
     """Return whether an answer is found again."""
     kind, answer, ids, room = one["kind"], one["answer"], one["objects"], now.room
-    number = float(re.match(r"[\d.]+|$", answer)[0] or "nan")  # type: ignore[index]
+    number = float((re.match(r"[\d.]+", answer) or (math.nan,))[0])
     step = 0.5 * 10.0 ** -len(answer.split(" ")[0].partition(".")[2]) + 0.002
     if kind == "existence":
         category = re.sub(r"^(Is there|Do you see|Can) an? | (in the picture|be seen)?\?$|\?$", "",
@@ -311,7 +332,9 @@ def agrees(one: dict[str, Any], now: Picture, before: Picture | None, meant: dic
     return kind == "change" and said == set(ids) == both
 
 
-def _begins(off: np.ndarray, free: np.ndarray, at: tuple[int, int], forward: np.ndarray) -> set[str]:
+def _begins(
+    off: np.ndarray, free: np.ndarray, at: tuple[int, int], forward: np.ndarray
+) -> set[str]:
     """Directions in which shortest ways to the cells near an object begin."""
     goals = np.argwhere(off <= NEAR_M + 0.05)
     from_start = _distances(free, [at])
@@ -352,7 +375,10 @@ def true_of(text: str, now: Picture) -> list[int] | None:
         (r"the tallest (?P<x>.+)", lambda ids: [max(ids, key=now.room.height)]),
         (r"the leftmost (?P<x>.+)", lambda ids: [min(ids, key=lambda i: now.span(i)[0])]),
         (r"the rightmost (?P<x>.+)", lambda ids: [max(ids, key=lambda i: now.span(i)[1])]),
-        (r"the (?P<x>.+) on the (?P<y>.+)", lambda ids, y: [i for i in ids if now.room.is_on(i, y)]),
+        (
+            r"the (?P<x>.+) on the (?P<y>.+)",
+            lambda ids, y: [i for i in ids if now.room.is_on(i, y)],
+        ),
         (r"the (?P<x>.+)", lambda ids: ids),
     )
     for pattern, meant in patterns:
@@ -407,11 +433,15 @@ def judge(folder: Path) -> None:
             fine = agrees(one, now, before, meant)
             same[one["kind"]] += fine
             if not fine:
-                print("answer", number, image, one["kind"], one["text"], one["answer"], one["objects"])
+                print(
+                    "answer", number, image, one["kind"], one["text"], one["answer"], one["objects"]
+                )
     print("|kind|answers|agree|commonest|chance|\n|---|---|---|---|---|")
     for kind, counts in sorted(answers.items()):
         total = sum(counts.values())
         chance = 0.5 if kind in ("nearer", "taller") else 1.0 / len(counts)
-        print(f"|{kind}|{total}|{same[kind]} of {asked[kind]}|{max(counts.values()) / total:.3f}|{chance:.3f}|")
+        print(
+            f"|{kind}|{total}|{same[kind]} of {asked[kind]}|{max(counts.values()) / total:.3f}|{chance:.3f}|"
+        )
     print(f"{sum(same.values())} of {sum(asked.values())} answers agree; "
           f"{once} of {told} expressions are true of one object")  # fmt: skip

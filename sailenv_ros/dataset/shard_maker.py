@@ -21,8 +21,8 @@ from sailenv_ros.authoring.room_rules.names import PREFIX
 from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.camera_tracks import Track, place_cameras, track_of, turning
 from sailenv_ros.dataset.findings import Findings
-from sailenv_ros.dataset.frame_sink import FrameSink
 from sailenv_ros.dataset.formats.formats import format_class
+from sailenv_ros.dataset.frame_sink import FrameSink
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
 from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, MountedCamera, RuleCamera

@@ -125,9 +125,7 @@ class _Box:
         return bool((np.abs(self.turn.T @ (point - self.middle)) <= self.half).all())
 
 
-def _meets(
-    start: NDArray[np.float64], end: NDArray[np.float64], solids: Sequence[Solid]
-) -> bool:
+def _meets(start: NDArray[np.float64], end: NDArray[np.float64], solids: Sequence[Solid]) -> bool:
     line = Solid(np.stack([start, end]))
     return any(solids_overlap(line, solid) for solid in solids)
 
@@ -155,10 +153,8 @@ def _materials(
         for part in drawn.model.parts:
             # What was painted keeps the names of what it was.
             word = "" if drawn.instance.painted else material_word(part.material.name)
-            a, b, c = (
-                part.mesh.positions[part.mesh.triangles[:, k]] * np.float64(drawn.scale)
-                for k in range(3)
-            )
+            points = part.mesh.positions * np.asarray(drawn.scale)
+            a, b, c = (points[part.mesh.triangles[:, k]] for k in range(3))
             area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
             own[word] = own.get(word, 0.0) + area
     return {

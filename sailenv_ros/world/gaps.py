@@ -34,9 +34,7 @@ class BodyGap:
     rise: float
 
 
-def gaps(
-    world: World, within_m: float, skipped: Callable[[Body, Body], bool]
-) -> Iterator[BodyGap]:
+def gaps(world: World, within_m: float, skipped: Callable[[Body, Body], bool]) -> Iterator[BodyGap]:
     """Yield the pairs of bodies that are nearer to each other than a distance, static ones too.
 
     Parameters

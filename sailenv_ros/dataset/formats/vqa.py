@@ -90,7 +90,7 @@ def questions_of(sample: Sample, graph: SceneGraph) -> tuple[Question, ...]:
     frame, previous = sample.frame, sample.previous
     before: Mapping[int, SeenObject] | None = None
     if previous is not None and (previous.scene, previous.epoch) == (frame.scene, frame.epoch):
-        before = {one.id: one for one in seen_objects(previous) if one.clear}
+        before = {one.id: one for one in seen_objects(previous)}
     return questions(graph, seed=sample.number, absent=known - seen, before=before)
 
 

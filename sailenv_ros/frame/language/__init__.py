@@ -8,8 +8,8 @@ from __future__ import annotations
 from sailenv_ros.frame.language.balance import balanced
 from sailenv_ros.frame.language.captions import Caption, caption
 from sailenv_ros.frame.language.colour_words import COLOUR_WORDS
-from sailenv_ros.frame.language.questions import QUESTION_KINDS, Question, questions
 from sailenv_ros.frame.language.material_words import MATERIAL_WORDS
+from sailenv_ros.frame.language.questions import QUESTION_KINDS, Question, questions
 from sailenv_ros.frame.language.referring import Referring, referring_expressions
 from sailenv_ros.frame.language.relation_laws import RELATIONS
 from sailenv_ros.frame.language.scene_facts import Gap, Opening, SceneFacts

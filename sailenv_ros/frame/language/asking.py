@@ -91,9 +91,7 @@ class Asker:
         text = phrases[int(self.rng.integers(len(phrases)))].format(**{**told, **words})
         facts = (proof,) if isinstance(proof, Mapping) else tuple(proof)
         ids = tuple(one.id for one in objects)
-        return Question(
-            kind=kind, text=text, answer=answer, value=value, objects=ids, proof=facts
-        )
+        return Question(kind=kind, text=text, answer=answer, value=value, objects=ids, proof=facts)
 
 
 def balanced_pairs(

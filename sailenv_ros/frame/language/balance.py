@@ -14,8 +14,9 @@ def balanced(answers: Sequence[tuple[str, str]], seed: int = 0) -> list[int]:
     """Choose questions so that each answer of a kind is equally frequent.
 
     Answers that are rarer than a bound are left out, and so many of all others are drawn as the
-    rarest of them has; the bound is the one that keeps most questions. Answers of the kinds whose
-    question names the choices differ with it: of these nothing is left out here.
+    rarest of them has. The bound is the one with the greatest product of how many each has and how
+    many others there are: a kind with one answer alone is left out. Where the question names the
+    choices, as for `NAMES_CHOICES`, nothing is left out.
 
     Parameters
     ----------
@@ -39,10 +40,9 @@ def balanced(answers: Sequence[tuple[str, str]], seed: int = 0) -> list[int]:
             of[kind][answer].append(place)
     for places in of.values():
         counts = sorted((len(own) for own in places.values()), reverse=True)
-        # With at most so many of each, that many answers have enough.
-        each = max(counts, key=lambda count: count * sum(c >= count for c in counts))
+        each = max(counts, key=lambda count: count * (sum(c >= count for c in counts) - 1))
         for own in places.values():
-            if len(own) >= each:
+            if len(own) >= each and len(counts) > 1:
                 kept += [own[k] for k in rng.permutation(len(own))[:each].tolist()]
     return sorted(kept)
 

@@ -25,7 +25,7 @@ MOST_NAMED = 3
 
 def change_questions(asker: Asker, before: Mapping[int, SeenObject]) -> Iterator[Question]:
     """Yield questions about what both pictures show clearly."""
-    both = [one for one in asker.named if one.id in before]
+    both = [one for one in asker.named if one.id in before and before[one.id].clear]
     moved, still, unclear = [], [], False
     for one in both:
         way, turn = _motion(before[one.id], one)
@@ -39,10 +39,10 @@ def change_questions(asker: Asker, before: Mapping[int, SeenObject]) -> Iterator
         else:
             unclear = True
     yield from balanced_pairs(asker, [question for _, question in moved], still)
-    # What both show, but has no name of its own, would be missing in the answer.
-    others = [one for one in asker.graph.objects.values() if one.id in before]
-    nameless = [one for one in others if one.id not in asker.names]
-    rests = all(sum(_motion(before[one.id], one)) <= STILL_M for one in nameless)
+    # What both show, but has no name of its own or is hardly seen, would be missing.
+    told = {one.id for one in both}
+    missing = [one for id_, one in asker.graph.objects.items() if id_ in before and id_ not in told]
+    rests = all(sum(_motion(before[one.id], one)) <= STILL_M for one in missing)
     if 1 <= len(moved) <= MOST_NAMED and rests and not unclear:
         objects = [one for one, _ in moved]
         names = sorted(asker.names[one.id] for one in objects)

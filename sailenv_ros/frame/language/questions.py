@@ -18,8 +18,8 @@ from sailenv_ros.frame.language.pair_questions import pair_questions
 from sailenv_ros.frame.language.scene_graph import SceneGraph
 from sailenv_ros.frame.language.seen_objects import SeenObject
 from sailenv_ros.frame.language.single_questions import single_questions
-from sailenv_ros.frame.language.wording import named, plural
 from sailenv_ros.frame.language.walk_questions import walk_questions
+from sailenv_ros.frame.language.wording import named, plural
 
 __all__ = ["QUESTION_KINDS", "Question", "questions"]
 
@@ -53,7 +53,9 @@ def questions(
     return tuple(_all(asker, sorted(set(absent)), before))
 
 
-def _all(asker: Asker, absent: list[str], before: Mapping[int, SeenObject] | None) -> Iterator[Question]:
+def _all(
+    asker: Asker, absent: list[str], before: Mapping[int, SeenObject] | None
+) -> Iterator[Question]:
     of: dict[str, list[SeenObject]] = {}
     for one in asker.graph.objects.values():
         of.setdefault(one.category, []).append(one)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.language.scene_facts import NO_FACTS, SceneFacts
-from sailenv_ros.frame.language.seen_objects import UPRIGHT, SeenObject
+from sailenv_ros.frame.language.seen_objects import SeenObject
 from sailenv_ros.space.outlines import Solid
 from sailenv_ros.space.solid_distances import solid_distance_m
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from sailenv_ros.frame.language.asking import Asker, Question, balanced_pairs
+from sailenv_ros.frame.language.asking import Asker, Fact, Question, balanced_pairs
 from sailenv_ros.frame.language.relation_laws import SHUT_SHARE
 from sailenv_ros.frame.language.seen_objects import SeenObject
 from sailenv_ros.frame.language.wording import metres, per_cent
@@ -20,18 +20,20 @@ _CARRIED = {"support": "on", "inside": "in"}
 
 def single_questions(asker: Asker) -> Iterator[Question]:
     """Yield the questions about each object that has a name."""
-    opened, shut = [], []
+    opened: list[Question] = []
+    shut: list[Question] = []
     for one in asker.named:
         yield _length(asker, "distance", one, one.distance_m)
         if one.is_upright:
             yield _length(asker, "height", one, one.height_m)
         if one.colour and one.colour not in asker.names[one.id]:
             share = one.colours[one.colour]
-            proof = {"id": one.id, "colour": one.colour, "share": share}
+            proof: Fact = {"id": one.id, "colour": one.colour, "share": share}
             yield asker.ask("colour", one.colour, (one,), proof)
         if one.material:
-            told = {"id": one.id, "material": one.material, "share": one.materials[one.material]}
-            yield asker.ask("material", one.material, (one,), told)
+            share = one.materials[one.material]
+            proof = {"id": one.id, "material": one.material, "share": share}
+            yield asker.ask("material", one.material, (one,), proof)
         yield from _hidden(asker, one)
         for kind, relation in _CARRIED.items():
             yield from _carrier(asker, kind, relation, one)

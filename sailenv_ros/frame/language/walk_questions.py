@@ -41,14 +41,14 @@ def walk_questions(asker: Asker) -> Iterator[Question]:
             reached = np.isfinite(away)
             nearest = float(near[reached].min())
             proof = {"id": one.id, "radius_m": space.body.radius_m, "nearest_m": nearest}
-            words = {"robot": _size(space.body)}
+            robot = _size(space.body)
             if nearest <= NEAR_M:
-                yes.append(asker.ask("reach", "yes", (one,), proof, **words))
+                yes.append(asker.ask("reach", "yes", (one,), proof, robot=robot))
                 if space is view.facts.spaces[0]:
                     ways = np.where(near <= NEAR_M, away, np.inf)
                     yield from _path(asker, view, space, one, ways)
             elif nearest > FAR_M:
-                no.append(asker.ask("reach", "no", (one,), proof, **words))
+                no.append(asker.ask("reach", "no", (one,), proof, robot=robot))
         yield from balanced_pairs(asker, yes, no)
 
 
