@@ -21,7 +21,6 @@ from sailenv_ros.authoring.room_rules.names import PREFIX
 from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.camera_tracks import Track, place_cameras, track_of, turning
 from sailenv_ros.dataset.findings import Findings
-from sailenv_ros.dataset.formats.formats import format_class
 from sailenv_ros.dataset.frame_sink import FrameSink
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
@@ -90,7 +89,6 @@ class ShardMaker:
         self._on_frame = on_frame
         self._due = due_steps(job.recipe.clip.rate, job.recipe.clip.frames)
         self._camera_data = [one.model_dump(mode="json") for one in self._recipe.cameras]
-        self._asks_facts = any(format_class(name).needs_facts for name in job.recipe.formats)
         self._findings = Findings()
         self._info: tuple[SceneInfo | None, SceneInfo | None] = (None, None)
         # What is drawn of furniture serves all scenes that have it, and what a room mirrors all
@@ -215,21 +213,18 @@ class ShardMaker:
             if number:
                 core.step(step - self._due[number - 1])
             place_cameras(recipe.cameras, tracks, number, core)
-            facts: SceneFacts | None = None
+            facts = scene_facts(core) if recipe.needs_facts else None
             for camera in recipe.cameras:
                 frame = core.capture(recipe.views, agent=_agent_name(camera))
-                if self._asks_facts:
-                    facts = scene_facts(core) if facts is None else facts
-                    frame = replace(frame, facts=facts)
                 self._findings.look_at(frame, scene)
-                writer.add(camera.name, self._kept(frame, camera))
+                writer.add(camera.name, self._kept(frame, camera, facts))
                 frames += 1
                 self._on_frame()
         for camera in recipe.cameras:
             core.delete_agent(_agent_name(camera))
         return frames
 
-    def _kept(self, frame: Frame, camera: AnyCamera) -> Frame:
+    def _kept(self, frame: Frame, camera: AnyCamera, facts: SceneFacts | None) -> Frame:
         """Return a frame as the formats get it: without what depends on machine and moment."""
         assert frame.info is not None
         if frame.info is not self._info[0]:
@@ -239,6 +234,7 @@ class ShardMaker:
             "agent": camera.name,
             "timings_s": {},
             "info": self._info[1],
+            "facts": facts,
         }
         if not self._recipe.amodal:
             changes["draw_amodal"] = None

@@ -1,4 +1,4 @@
-"""Questions about two objects: which is nearer or taller, on which side, how far apart, touching."""
+"""Questions about two objects: nearer, taller, on which side, how far apart, touching."""
 
 from __future__ import annotations
 

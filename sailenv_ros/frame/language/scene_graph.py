@@ -74,18 +74,19 @@ def scene_graph(frame: Frame, facts: SceneFacts | None = None) -> SceneGraph:
     ----------
     frame : Frame
     facts : SceneFacts or None
-        Of its instant; None takes those of the frame. Without any, nothing touches, supports or
-        holds another thing, is in it, or is open.
+        Of its instant; None takes those of the frame, if a shutter that rolled did not end later.
+        Without any, nothing touches, supports or holds another thing, is in it, or is open.
 
     Raises
     ------
     InvalidRequest
         If the facts are of another instant; see `seen_objects` for others.
     """
-    known = facts or frame.facts or NO_FACTS
-    if known is not NO_FACTS and known.sim_time_ns != frame.stamp_ns:
+    if facts is not None and facts.sim_time_ns != frame.stamp_ns:
         accepted = f"the frame's, {frame.stamp_ns} ns"
-        raise InvalidRequest("time of the facts", f"{known.sim_time_ns} ns", accepted)
+        raise InvalidRequest("time of the facts", f"{facts.sim_time_ns} ns", accepted)
+    known = facts or frame.facts or NO_FACTS
+    known = known if known.sim_time_ns == frame.stamp_ns else NO_FACTS
     objects = seen_objects(frame, known)
     pose = frame.camera.world_from_camera
     view = View(
