@@ -18,7 +18,7 @@ import json
 import sys
 from pathlib import Path
 
-CAMERAS = 16
+CAMERAS = 12
 KINDS = ("kitchen", "office", "living_room", "bedroom", "bathroom")
 SIZE = {"width": 640, "height": 480}
 

@@ -230,12 +230,8 @@ class ShardMaker:
         if frame.info is not self._info[0]:
             told = replace(frame.info, renderer="native renderer", scenes=(frame.info.scene,))
             self._info = frame.info, told
-        changes: dict[str, Any] = {
-            "agent": camera.name,
-            "timings_s": {},
-            "info": self._info[1],
-            "facts": facts,
-        }
+        changes: dict[str, Any] = {"agent": camera.name, "timings_s": {}, "info": self._info[1]}
+        changes["facts"] = facts
         if not self._recipe.amodal:
             changes["draw_amodal"] = None
         return replace(frame, **changes)

@@ -140,6 +140,8 @@ class DatasetFormat(ABC):
         True if it has.
     packages : tuple of str
         Optional packages that it cannot do without.
+    shared : dict
+        What was found once for all formats that are given the same frames.
     """
 
     views: ClassVar[tuple[str, ...]] = ()
@@ -160,6 +162,7 @@ class DatasetFormat(ABC):
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.shared: dict[Any, Any] = {}
 
     @abstractmethod
     def add(self, sample: Sample) -> WriteResult:
