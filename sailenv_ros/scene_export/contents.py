@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, TypeAlias
 
+from sailenv_ros.scene_export.motion import ExportedMotion
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import Instance
@@ -39,10 +40,13 @@ class ExportedPiece:
     instance : Instance
     parts : tuple of ModelPart
         In the body frame, before the body's scale; materials have the light of lamps as emission.
+    deforms : bool
+        True for people, whose vertices move.
     """
 
     instance: Instance
     parts: tuple[ModelPart, ...]
+    deforms: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,6 +163,8 @@ class ExportedScene:
     cameras : tuple of ExportedCamera
     gravity : (3,) tuple of float
         World frame [m/s²].
+    motion : ExportedMotion or None
+        How it goes on from there; None for the instant alone.
     """
 
     name: str
@@ -167,6 +173,7 @@ class ExportedScene:
     environment: Environment | None = None
     cameras: tuple[ExportedCamera, ...] = ()
     gravity: Vector3 = (0.0, 0.0, -9.81)
+    motion: ExportedMotion | None = None
 
     @cached_property
     def parts(self) -> tuple[ModelPart, ...]:
