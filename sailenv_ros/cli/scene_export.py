@@ -34,6 +34,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--rate", type=float, default=24.0, metavar="HZ", help="samples of the motion a second"
     )
     parser.add_argument(
+        "--light",
+        choices=("lamps", "baked"),
+        default="lamps",
+        help="baked: .glb with a light map instead of lights",
+    )
+    parser.add_argument(
         "--motion", type=Path, metavar="BAG", help="write the motion of a recording of the scene"
     )
     add_allow_modules(parser)
@@ -64,6 +70,7 @@ def export_one_scene(args: argparse.Namespace) -> int:
             duration_s=args.duration,
             rate_hz=args.rate,
             frames=frames,
+            light=args.light,
             overwrite=args.overwrite,
             allow_modules=args.allow_modules,
         )

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal, TypeAlias, get_args
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
@@ -21,12 +22,15 @@ from sailenv_ros.scene_export.losses import motion_losses
 from sailenv_ros.scene_export.motion import Moment, motion_of
 from sailenv_ros.scene_export.saving import require_free, save
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.validation import checked_number
 
 __all__ = ["ExportReport", "export_asset", "export_scene"]
+
+_Light: TypeAlias = Literal["lamps", "baked"]
 
 LONGEST_S = 3600.0
 """Latest moment of a scene that is exported [s]."""
@@ -66,6 +70,7 @@ def export_scene(
     duration_s: float = 0.0,
     rate_hz: float = 24.0,
     frames: Sequence[Frame] = (),
+    light: _Light = "lamps",
     overwrite: bool = False,
     allow_modules: bool = False,
 ) -> ExportReport:
@@ -87,6 +92,9 @@ def export_scene(
         Samples of the motion a second, at most 240.
     frames : sequence of Frame
         Motion that was captured or recorded of the scene, instead: a sample for each frame.
+    light : {'lamps', 'baked'}
+        ``baked``, of ``.glb`` alone: a light map with shadows and bounced light instead of lights.
+        A room whose light is not baked yet is baked first.
     overwrite : bool
         True replaces both.
     allow_modules : bool
@@ -108,13 +116,17 @@ def export_scene(
     rate = checked_number("rate_hz", rate_hz, 0.1, STEPS_PER_SECOND, unit="Hz")
     if duration and frames:
         raise InvalidRequest("duration_s", duration_s, "0 where frames tell the motion")
+    if light not in get_args(_Light):
+        raise InvalidRequest("light", light, f"one of: {', '.join(get_args(_Light))}")
+    if light == "baked" and path.suffix.lower() != ".glb":
+        raise InvalidRequest("light", light, "lamps, as .glb alone holds light maps")
     if isinstance(scene, Simulation):
         if steps or duration:
             what, value = ("at_s", at_s) if steps else ("duration_s", duration_s)
             raise InvalidRequest(what, value, "0 for a Simulation: it is written as it is now")
         running = scene
         return _export(
-            lambda: _moved(_present(running), frames, rate),
+            lambda: _moved(_present(running, light), frames, rate),
             path,
             SCENE_FORMATS,
             overwrite=overwrite,
@@ -122,11 +134,14 @@ def export_scene(
     described = scene
 
     def gathered() -> ExportedScene:
-        library = SceneLibrary(allow_modules=allow_modules, baked_light=False)
+        baked = light == "baked"
+        library = SceneLibrary(allow_modules=allow_modules, baked_light=baked)
         with closing(library.build(described)) as world:
+            if baked:
+                bake_missing(world)
             world.step(steps)
             agents = agents_in(world, library.agents_of(world.scene))
-            scene = exported_world(world, agents)
+            scene = exported_world(world, agents, light=light)
             if duration:
                 return with_motion(scene, world, agents, duration, rate)
             return _moved(scene, frames, rate)
@@ -154,8 +169,8 @@ def _moved(scene: ExportedScene, frames: Sequence[Frame], rate_hz: float) -> Exp
     return replace(scene, motion=motion_of(moments, ids, rate_hz))
 
 
-def _present(simulation: Simulation) -> ExportedScene:
-    return simulation.read(lambda core: exported_world(core.world, core.agents))
+def _present(simulation: Simulation, light: _Light) -> ExportedScene:
+    return simulation.read(lambda core: exported_world(core.world, core.agents, light=light))
 
 
 def export_asset(asset: str, path: str | Path, *, overwrite: bool = False) -> ExportReport:

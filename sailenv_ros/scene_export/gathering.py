@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Iterable, Sequence
 from contextlib import closing
+from typing import Literal
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from sailenv_ros.scene_export.contents import (
     ExportedPiece,
     ExportedScene,
 )
+from sailenv_ros.scene_export.light_map import LitParts, light_of
 from sailenv_ros.scene_export.motion import Moment, check_samples, motion_of
 from sailenv_ros.scene_export.names import identifier
 from sailenv_ros.scene_export.sharing import Sharing
@@ -56,8 +58,18 @@ __all__ = [
 Vector3 = tuple[float, float, float]
 
 
-def exported_world(world: World, agents: AgentTable | None = None) -> ExportedScene:
-    """Return a world as it is now, with the cameras of agents."""
+def exported_world(
+    world: World, agents: AgentTable | None = None, *, light: Literal["lamps", "baked"] = "lamps"
+) -> ExportedScene:
+    """Return a world as it is now, with the cameras of agents.
+
+    Raises
+    ------
+    InvalidRequest
+        If its light is wanted as it was baked, and is not.
+    """
+    light_map = light_of(world) if light == "baked" else None
+    lit = None if light_map is None else LitParts(light_map)
     snapshot = world.snapshot()
     contents = snapshot.contents
     lamps = _Lamps(contents.lights)
@@ -68,7 +80,10 @@ def exported_world(world: World, agents: AgentTable | None = None) -> ExportedSc
         parts = lamps.lit(drawn)
         if instance.id in snapshot.deformations:
             parts = _deformed(parts, snapshot.deformations[instance.id])
-        piece = ExportedPiece(instance=instance, parts=parts, deforms=drawn.deforms)
+        parts, places = (parts, ()) if lit is None else lit.of(instance.id, parts)
+        piece = ExportedPiece(
+            instance=instance, parts=parts, deforms=drawn.deforms, light_places=places
+        )
         pieces.setdefault(owner, []).append(piece)
     for own in pieces.values():
         own.sort(key=lambda piece: piece.instance.is_part)
@@ -87,6 +102,7 @@ def exported_world(world: World, agents: AgentTable | None = None) -> ExportedSc
             for record in table
         ),
         gravity=world.gravity,
+        light_map=light_map,
     )
 
 

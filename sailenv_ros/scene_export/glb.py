@@ -32,13 +32,18 @@ from sailenv_ros.scene_export.textures import Textures, texture_slots
 from sailenv_ros.types.deformation import MovedMesh
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
-from sailenv_ros.types.model import Material, ModelPart
+from sailenv_ros.types.model import Material
 from sailenv_ros.version import __version__
 
 __all__ = ["write_glb"]
 
+LIGHT_MAP = "MOZ_lightmap"
+"""Mozilla, "MOZ_lightmap": radiance is the base colour times this texture times its intensity."""
+
 _FILE_FROM_WORLD = Pose(orientation_xyzw=(-0.5, -0.5, -0.5, 0.5))
 """The file's x, y, z are the world's y, z, x."""
+
+LOST_BY_BAKING = "light is in the light map (MOZ_lightmap) alone; what can move has none"
 
 _BODY_FROM_FILE = (0.5, 0.5, 0.5, 0.5)
 
@@ -54,7 +59,7 @@ def write_glb(scene: ExportedScene, stem: str) -> Written:
     made = _GlbWriter(scene)
     losses = (
         *physics_losses(scene, "glTF", extras=True),
-        *light_losses(scene, "glTF"),
+        *(light_losses(scene, "glTF") if scene.light_map is None else (LOST_BY_BAKING,)),
         *camera_losses(scene, "glTF"),
     )
     return Written(data=made.data(), losses=losses)
@@ -66,8 +71,8 @@ class _GlbWriter:
         self._buffers = GlbBuffers()
         self._textures = Textures()
         self._images: dict[str, int] = {}
-        self._materials: dict[int, int] = {}
-        self._meshes: dict[tuple[tuple[int, int], ...], int] = {}
+        self._materials: dict[tuple[int, bool], int] = {}
+        self._meshes: dict[tuple[tuple[int, ...], ...], int] = {}
         self._motion = None if scene.motion is None else GlbMotion(scene.motion, self._buffers)
         self._tree: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": f"sailenv_ros {__version__}"},
@@ -79,15 +84,17 @@ class _GlbWriter:
         """Return the whole file."""
         roots = self._tree["scenes"][0]["nodes"]
         roots += [self._add_body(body) for body in self._scene.bodies]
-        roots += [self._add_light(light) for light in self._scene.lights]
+        # All of them are in the light map, if there is one.
+        lights = self._scene.lights if self._scene.light_map is None else ()
+        roots += [self._add_light(light) for light in lights]
         for camera in self._scene.cameras:
             extras = camera_extras(camera.intrinsics)
             entry = {"name": camera.name, **gltf_camera(camera.intrinsics), "extras": extras}
             node = {"name": camera.name, "camera": self._append("cameras", entry)}
             roots.append(self._append("nodes", {**node, **_looking(camera.pose)}))
             self._follow(roots[-1], "cameras", camera.name, _looking)
-        if self._scene.lights:
-            self._tree["extensionsUsed"] = [LIGHTS]
+        if lights or self._scene.light_map is not None:
+            self._tree["extensionsUsed"] = [LIGHTS if lights else LIGHT_MAP]
         if self._motion is not None and self._motion.moves:
             self._tree["animations"] = [self._motion.entry()]
         views, binary = self._buffers.finished()
@@ -142,7 +149,7 @@ class _GlbWriter:
     def _node(self, piece: ExportedPiece) -> dict[str, Any]:
         node: dict[str, Any] = {"name": piece.instance.name}
         if piece.parts:
-            node["mesh"] = self._mesh(piece.instance.asset, piece.parts, self._samples(piece))
+            node["mesh"] = self._mesh(piece)
         return {**node, "extras": instance_extras(piece.instance)}
 
     def _add_light(self, light: Light) -> int:
@@ -153,15 +160,21 @@ class _GlbWriter:
 
     # -- meshes and materials --------------------------------------------------------------
 
-    def _mesh(
-        self, name: str, parts: Sequence[ModelPart], samples: Sequence[Sequence[MovedMesh]]
-    ) -> int:
-        key = tuple((id(part.mesh), id(part.material)) for part in parts)
+    def _mesh(self, piece: ExportedPiece) -> int:
+        parts, samples, places = piece.parts, self._samples(piece), piece.light_places
+        name = piece.instance.asset
+        key: tuple[tuple[int, ...], ...] = tuple(
+            (id(part.mesh), id(part.material)) for part in parts
+        )
+        if places:
+            key = (*key, (piece.instance.id,))
         if key not in self._meshes:
             primitives = []
             for place, part in enumerate(parts):
                 attributes, indices = self._buffers.mesh(part.mesh)
-                material = self._material(part.material)
+                if places:
+                    attributes = {**attributes, "TEXCOORD_1": self._buffers.places(places[place])}
+                material = self._material(part.material, lit=bool(places))
                 primitive = {"attributes": attributes, "indices": indices, "material": material}
                 if self._motion is not None and samples:
                     shapes = [sample[place] for sample in samples]
@@ -173,8 +186,9 @@ class _GlbWriter:
             self._meshes[key] = self._append("meshes", entry)
         return self._meshes[key]
 
-    def _material(self, material: Material) -> int:
-        if id(material) not in self._materials:
+    def _material(self, material: Material, *, lit: bool) -> int:
+        own = id(material), lit
+        if own not in self._materials:
             entry: dict[str, Any] = {
                 "pbrMetallicRoughness": {
                     "baseColorFactor": list(material.base_colour),
@@ -198,8 +212,17 @@ class _GlbWriter:
                 entry["alphaCutoff"] = material.alpha_cutoff
             if material.double_sided:
                 entry["doubleSided"] = True
-            self._materials[id(material)] = self._append("materials", entry)
-        return self._materials[id(material)]
+            if lit:
+                entry["extensions"] = {LIGHT_MAP: self._light_map()}
+            self._materials[own] = self._append("materials", entry)
+        return self._materials[own]
+
+    def _light_map(self) -> dict[str, Any]:
+        """Return how a material finds its light."""
+        light = self._scene.light_map
+        assert light is not None
+        texture = self._texture(light.texture, alpha=True)  # without loss
+        return {"index": texture, "texCoord": 1, "intensity": light.white}
 
     def _texture(self, texture: Any, *, alpha: bool) -> int:
         picture = self._textures.of(texture, alpha=alpha)

@@ -44,6 +44,10 @@ class GlbBuffers:
             self._meshes[id(mesh)] = attributes, self._numbers(mesh)
         return self._meshes[id(mesh)]
 
+    def places(self, uvs: NDArray[Any]) -> int:
+        """Return the accessor of texture coordinates whose v runs down."""
+        return self._vertices(self._uvs, uvs, 1)
+
     def moved(self, positions: NDArray[Any], by: NDArray[Any], *, bounds: bool) -> int:
         """Return the accessor of what vertices of the body's axes become, less what they are."""
         away = (by.astype(np.float64) - positions)[:, [1, 2, 0]]

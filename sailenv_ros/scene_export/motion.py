@@ -61,6 +61,12 @@ class ExportedMotion:
     cameras: Mapping[str, tuple[Pose, ...]]
     meshes: Mapping[int, tuple[tuple[MovedMesh, ...], ...]]
 
+    @property
+    def codes(self) -> list[float]:
+        """The times as time codes, which need no more digits."""
+        found: list[float] = (self.times_s * self.rate_hz).round(6).tolist()
+        return found
+
 
 def motion_of(moments: Sequence[Moment], ids: Sequence[int], rate_hz: float) -> ExportedMotion:
     """Gather the motion of bodies from instants.

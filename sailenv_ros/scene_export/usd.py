@@ -207,7 +207,7 @@ class _UsdWriter:
         motion = self._scene.motion
         if motion is None or not poses:
             return {}
-        return dict(zip((motion.times_s * motion.rate_hz).tolist(), poses, strict=True))
+        return dict(zip(motion.codes, poses, strict=True))
 
 
 def _times(scene: ExportedScene) -> str:
@@ -216,7 +216,7 @@ def _times(scene: ExportedScene) -> str:
     if motion is None:
         return "    timeCodesPerSecond = 1\n"
     rate = number(motion.rate_hz)
-    end = number(motion.times_s[-1] * motion.rate_hz)
+    end = number(motion.codes[-1])
     return (
         f"    endTimeCode = {end}\n    framesPerSecond = {rate}\n    startTimeCode = 0\n"
         f"    timeCodesPerSecond = {rate}\n"

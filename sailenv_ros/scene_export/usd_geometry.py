@@ -47,7 +47,7 @@ class UsdGeometry:
         pieces = [piece for body in scene.bodies for piece in body.pieces if piece.parts]
         motion = scene.motion
         self._moved = {} if motion is None else motion.meshes
-        self._codes = [] if motion is None else (motion.times_s * motion.rate_hz).tolist()
+        self._codes = [] if motion is None else motion.codes
         self._counts = Counter(
             _key(piece.parts) for piece in pieces if piece.instance.id not in self._moved
         )
