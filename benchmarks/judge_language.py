@@ -97,6 +97,7 @@ if __name__ == "__main__":
     parser.add_argument("what", choices=("write", "judge"))
     parser.add_argument("folder", type=Path)
     parser.add_argument("--rooms", type=int, default=10)
+    parser.add_argument("--answers", type=int, default=10_500, help="so many are recomputed")
     args = parser.parse_args()
     if args.what == "write":
         write(args.folder, args.rooms)
@@ -104,4 +105,4 @@ if __name__ == "__main__":
         sys.path.insert(0, str(Path(__file__).parent))
         from recomputed_answers import judge
 
-        judge(args.folder)
+        judge(args.folder, args.answers)
