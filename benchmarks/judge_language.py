@@ -20,7 +20,6 @@ from pathlib import Path
 
 CAMERAS = 12
 KINDS = ("kitchen", "office", "living_room", "bedroom", "bathroom")
-SIZE = {"width": 640, "height": 480}
 
 
 def write(folder: Path, rooms: int) -> None:
@@ -35,7 +34,7 @@ def write(folder: Path, rooms: int) -> None:
 
     folder.mkdir(parents=True)
     images: list[dict[str, str]] = []
-    lens = CameraIntrinsics(**SIZE)
+    lens = CameraIntrinsics(width=640, height=480)
     with DatasetWriter(folder / "data", ["vqa", "coco"]) as writer:
         for number in range(rooms):
             name = f"generated:{KINDS[number % len(KINDS)]}:{100 + number}"
@@ -98,11 +97,14 @@ if __name__ == "__main__":
     parser.add_argument("folder", type=Path)
     parser.add_argument("--rooms", type=int, default=10)
     parser.add_argument("--answers", type=int, default=10_500, help="so many are recomputed")
+    parser.add_argument(
+        "--part", type=int, nargs=2, default=(0, 1), metavar=("K", "N"), help="rooms k of n alone"
+    )
     args = parser.parse_args()
     if args.what == "write":
         write(args.folder, args.rooms)
     else:
-        sys.path.insert(0, str(Path(__file__).parent))
-        from recomputed_answers import judge
+        sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+        from benchmarks.recomputed_answers import judge
 
-        judge(args.folder, args.answers)
+        judge(args.folder, args.answers, *args.part)

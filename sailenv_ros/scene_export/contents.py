@@ -171,7 +171,7 @@ class ExportedScene:
     gravity : (3,) tuple of float
         World frame [m/s²].
     motion : ExportedMotion or None
-        How it goes on from there; None for the instant alone.
+        How it moves from there; None for the instant alone.
     light_map : ExportedLight or None
         Its baked light, instead of lights; None leaves light to these.
     """

@@ -39,7 +39,7 @@ class Moment:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class ExportedMotion:
-    """What moves; all of it has a sample at each time.
+    """Poses and shapes of everything that moves, a sample at each time.
 
     Attributes
     ----------

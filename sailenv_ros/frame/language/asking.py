@@ -46,7 +46,7 @@ class Question:
 
 
 class Asker:
-    """What questions on one frame are asked with.
+    """Names, phrasings and chance for the questions on one frame.
 
     Parameters
     ----------

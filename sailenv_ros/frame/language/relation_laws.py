@@ -51,7 +51,7 @@ Numbers = Mapping[str, float]
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class View:
-    """What relations follow from beside the objects themselves.
+    """Camera and facts that relations follow from, beside the objects themselves.
 
     Attributes
     ----------

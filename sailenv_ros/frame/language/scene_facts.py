@@ -1,4 +1,4 @@
-"""What is known of a scene beside its frames: contacts, contents, openings, materials, free space.
+"""Facts of a scene beside its frames: contacts, contents, openings, materials, free space.
 
 Made by `simulation.scene_facts`; a plain value that can be sent and kept.
 """

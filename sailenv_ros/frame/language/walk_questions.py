@@ -16,7 +16,7 @@ from sailenv_ros.space.free_space import BodySize, FreeSpace
 __all__ = ["walk_questions"]
 
 NEAR_M, FAR_M = 0.5, 0.8
-"""What comes as near to an object reaches it; what stays farther away does not [m]."""
+"""Distance from an object up to which a place reaches it, and from which it does not [m]."""
 
 LEG_M = 0.3
 """Least length of a way's first leg whose direction is told [m]."""
