@@ -141,10 +141,12 @@ class Looks:
     def _read(self, named: str) -> int | None:
         from pxr import Ar
 
-        plain = Path(named.partition("[")[0]).resolve()
-        if not plain.is_relative_to(self._path.parent):
+        home = self._path.parent
+        file, bracket, within = named.partition("[")
+        plain = (home / file).resolve()
+        if not plain.is_relative_to(home):
             raise ValueError(f"it names {named[:80]!r}, which is not beside it")
-        asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(named))
+        asset = Ar.GetResolver().OpenAsset(Ar.ResolvedPath(f"{plain}{bracket}{within}"))
         data = bytes(asset.GetBuffer()) if asset and asset.GetSize() <= MOST_PICTURE_BYTES else b""
         kind = next((kind for magic, kind in _KINDS.items() if data.startswith(magic)), None)
         if kind is None:

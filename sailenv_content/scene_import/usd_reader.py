@@ -86,7 +86,7 @@ def _check_layers(path: Path) -> None:
         for named in layer.GetCompositionAssetDependencies():
             found = Sdf.ComputeAssetPathRelativeToLayer(layer, named)
             plain = found.partition("[")[0]
-            if not Path(plain).resolve().is_relative_to(home):
+            if not (home / plain).resolve().is_relative_to(home):
                 raise ValueError(f"it names {named[:80]!r}, which is not beside it")
             if found not in seen:
                 if len(seen) >= MOST_LAYERS:
