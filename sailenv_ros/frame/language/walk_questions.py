@@ -21,8 +21,15 @@ NEAR_M, FAR_M = 0.5, 0.8
 LEG_M = 0.3
 """Least length of a way's first leg whose direction is told [m]."""
 
-SECTOR_DEG = 30.0
-"""Half the angle around each of four directions in which it is clear."""
+SECTOR_DEG, ANY_SECTOR_DEG = 30.0, 60.0
+"""Half the angle around each of four directions in which the shortest way begins, and in which all
+others do that are hardly longer."""
+
+LONGER_M = 0.1
+"""By how much a way is longer that is no rival of the shortest one [m]."""
+
+RING_M = 0.3, 0.45
+"""Distances from the start at which ways are compared [m]."""
 
 _DIRECTIONS = {"ahead": 0.0, "left": 90.0, "backwards": 180.0, "right": -90.0}
 
@@ -88,9 +95,11 @@ def _path(
     leg = corners[1, :2] - corners[0, :2]
     ahead = math.degrees(math.atan2(forward[1], forward[0]))
     bearing = math.degrees(math.atan2(leg[1], leg[0])) - ahead
+    rivals = _rivals_deg(space, view.camera_m[:2], np.isfinite(away)) - ahead
     for word, middle in _DIRECTIONS.items():
-        off = (bearing - middle + 180.0) % 360.0 - 180.0
-        if abs(off) <= SECTOR_DEG and np.linalg.norm(leg) >= LEG_M:
+        clear = (np.abs(_turn_deg(rivals - middle)) <= ANY_SECTOR_DEG).all()
+        off = abs(float(_turn_deg(np.array(bearing - middle))))
+        if clear and off <= SECTOR_DEG and np.linalg.norm(leg) >= LEG_M:
             proof = {
                 "id": one.id,
                 "radius_m": space.body.radius_m,
@@ -99,6 +108,23 @@ def _path(
                 "corners_m": corners.tolist(),
             }
             yield asker.ask("path", word, (one,), proof, robot=_size(space.body))
+
+
+def _rivals_deg(
+    space: FreeSpace, start: NDArray[np.float64], goals: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """Return the directions from the world's x axis [deg] in which ways that are short begin."""
+    there, back = space.distances_m(start), space.distances_to_m(goals)
+    ring = (there >= RING_M[0]) & (there <= RING_M[1])
+    sums = np.where(ring, there + back, np.inf)
+    rows, columns = np.nonzero(sums <= sums.min() + LONGER_M)
+    x = space.origin_m[0] + (columns + 0.5) * space.resolution_m - start[0]
+    y = space.origin_m[1] + (rows + 0.5) * space.resolution_m - start[1]
+    return np.degrees(np.arctan2(y, x))
+
+
+def _turn_deg(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray((angle + 180.0) % 360.0 - 180.0)
 
 
 def _size(body: BodySize) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_ros.dataset import engine_of, load_job, make_dataset
 from sailenv_ros.dataset.formats import DatasetWriter
 from sailenv_ros.dataset.formats.formats import FORMATS
 from sailenv_ros.dataset.formats.hdf5_file import hdf5_bytes
@@ -21,6 +22,7 @@ from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
 from sailenv_ros.types.row_poses import RowPoses
+from tests.unit.dataset.conftest import SMALL, written_recipe
 
 SCENE = """
 version: 1
@@ -188,3 +190,25 @@ def test_arrays_of_other_types_are_refused() -> None:
 
 def test_all_formats_are_known() -> None:
     assert set(POSED) <= set(FORMATS)
+
+
+def test_a_recipe_writes_a_model_for_each_clip_and_asks_with_facts(tmp_path: Path) -> None:
+    """Points are there, those of both formats the same; questions know what touches."""
+    recipe = written_recipe(
+        tmp_path,
+        clips={"train": 2},
+        clip={"frames": 2, "rate": 10.0, "per_scene": 2},
+        cameras=[SMALL["cameras"][0]],
+        formats=["colmap", "3dgs", "vqa"],
+    )
+    job = load_job(recipe)
+    assert job.recipe.needs_facts
+    make_dataset(job, tmp_path / "made", engine_of(1, None))
+    for clip in ("000000", "000001"):
+        models = [tmp_path / "made" / name / "train" / clip / "sparse" / "0" / "points3D.txt"
+                  for name in ("colmap", "3dgs")]  # fmt: skip
+        assert models[0].read_bytes() == models[1].read_bytes() != b""
+        assert not list(tmp_path.rglob(".seen"))
+    lines = (tmp_path / "made" / "vqa" / "train.jsonl").read_text().splitlines()
+    kinds = {json.loads(line)["kind"] for line in lines}
+    assert "distance" in kinds
