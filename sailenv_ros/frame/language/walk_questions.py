@@ -18,6 +18,9 @@ __all__ = ["walk_questions"]
 NEAR_M, FAR_M = 0.5, 0.8
 """Distance from an object up to which a place reaches it, and from which it does not [m]."""
 
+WIDER_M = 0.6
+"""Distance from an object within which another goal counts as a rival [m]."""
+
 LEG_M = 0.3
 """Least length of a way's first leg whose direction is told [m]."""
 
@@ -53,7 +56,7 @@ def walk_questions(asker: Asker) -> Iterator[Question]:
                 yes.append(asker.ask("reach", "yes", (one,), proof, robot=robot))
                 if space is view.facts.spaces[0]:
                     ways = np.where(near <= NEAR_M, away, np.inf)
-                    yield from _path(asker, view, space, one, ways)
+                    yield from _path(asker, view, space, one, ways, reached & (near <= WIDER_M))
             elif nearest > FAR_M:
                 no.append(asker.ask("reach", "no", (one,), proof, robot=robot))
         yield from balanced_pairs(asker, yes, no)
@@ -84,8 +87,12 @@ def _path(
     space: FreeSpace,
     one: SeenObject,
     away: NDArray[np.float64],
+    goals: NDArray[np.bool_],
 ) -> Iterator[Question]:
-    """Ask in which direction the way to the nearest cell near an object begins."""
+    """Ask in which direction the way to the nearest cell near an object begins.
+
+    No way to goals in a wider ring begins otherwise.
+    """
     forward = view.forward[:2]
     if np.linalg.norm(forward) < 0.3:  # it looks down, or up
         return
@@ -95,7 +102,7 @@ def _path(
     leg = corners[1, :2] - corners[0, :2]
     ahead = math.degrees(math.atan2(forward[1], forward[0]))
     bearing = math.degrees(math.atan2(leg[1], leg[0])) - ahead
-    rivals = _rivals_deg(space, view.camera_m[:2], np.isfinite(away)) - ahead
+    rivals = _rivals_deg(space, view.camera_m[:2], goals) - ahead
     for word, middle in _DIRECTIONS.items():
         clear = (np.abs(_turn_deg(rivals - middle)) <= ANY_SECTOR_DEG).all()
         off = abs(float(_turn_deg(np.array(bearing - middle))))
