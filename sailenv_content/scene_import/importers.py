@@ -12,6 +12,7 @@ from sailenv_content.scene_import.gltf_scene import import_gltf
 from sailenv_content.scene_import.imported import ImportedScene, Names
 from sailenv_content.scene_import.robot_scene import import_robot_scene
 from sailenv_content.scene_import.sweet_home import import_sweet_home
+from sailenv_content.scene_import.usd_scene import import_usd
 from sailenv_content.scene_import.writing import write_scene
 from sailenv_ros.assets.archives import MAX_ARCHIVE_BYTES
 from sailenv_ros.assets.folders import standard_pack_folder
@@ -28,6 +29,10 @@ _IMPORTERS: Mapping[str, Importer] = MappingProxyType(
         ".sh3d": import_sweet_home,
         ".glb": import_gltf,
         ".gltf": import_gltf,
+        ".usd": import_usd,
+        ".usda": import_usd,
+        ".usdc": import_usd,
+        ".usdz": import_usd,
         ".urdf": import_robot_scene,
         ".xml": import_robot_scene,
         ".mjcf": import_robot_scene,

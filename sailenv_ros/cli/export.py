@@ -16,7 +16,8 @@ __all__ = ["add_parser", "run"]
 _FORMATS = (
     *("png", "coco", "kitti", "sintel", "flo", "movi", "tapvid", "mp4"),
     *("bop", "mot", "yolo", "yolo_segments", "voc", "webdataset", "parquet"),
-    *("lerobot", "mcap", "lve", "colmap", "nerfstudio", "vqa", "vqa_parquet", "cosmos"),
+    *("lerobot", "mcap", "lve", "colmap", "nerfstudio"),
+    *("instant-ngp", "3dgs", "scannet", "replica", "hypersim", "vqa", "vqa_parquet", "cosmos"),
 )
 
 

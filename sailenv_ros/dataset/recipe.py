@@ -285,6 +285,11 @@ class DatasetRecipe(SceneModel):
         return {view: one.kind for one in self.compression for view in one.views}
 
     @property
+    def needs_facts(self) -> bool:
+        """Whether a format asks for what frames do not show."""
+        return any(format_class(name).needs_facts for name in self.formats)
+
+    @property
     def annotation_rules(self) -> AnnotationRules:
         """Objects that are annotated, as formats take it."""
         return AnnotationRules(**self.annotations.model_dump())

@@ -38,6 +38,7 @@ from sailenv_ros.dataset.storage import Storage
 from sailenv_ros.dataset.store import ResumableStore
 from sailenv_ros.errors import NoFreeSpace, UnknownName
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.language.scene_facts import SceneFacts
 from sailenv_ros.render.cpu.mesh_store import MeshStore
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.renderer import NativeRenderer
@@ -45,6 +46,7 @@ from sailenv_ros.render.cpu.texture_store import TextureStore
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import Share
 from sailenv_ros.simulation.finished_light import bake_missing
+from sailenv_ros.simulation.scene_facts import scene_facts
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.script.rule_places import look_lens
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
@@ -211,27 +213,25 @@ class ShardMaker:
             if number:
                 core.step(step - self._due[number - 1])
             place_cameras(recipe.cameras, tracks, number, core)
+            facts = scene_facts(core) if recipe.needs_facts else None
             for camera in recipe.cameras:
                 frame = core.capture(recipe.views, agent=_agent_name(camera))
                 self._findings.look_at(frame, scene)
-                writer.add(camera.name, self._kept(frame, camera))
+                writer.add(camera.name, self._kept(frame, camera, facts))
                 frames += 1
                 self._on_frame()
         for camera in recipe.cameras:
             core.delete_agent(_agent_name(camera))
         return frames
 
-    def _kept(self, frame: Frame, camera: AnyCamera) -> Frame:
+    def _kept(self, frame: Frame, camera: AnyCamera, facts: SceneFacts | None) -> Frame:
         """Return a frame as the formats get it: without what depends on machine and moment."""
         assert frame.info is not None
         if frame.info is not self._info[0]:
             told = replace(frame.info, renderer="native renderer", scenes=(frame.info.scene,))
             self._info = frame.info, told
-        changes: dict[str, Any] = {
-            "agent": camera.name,
-            "timings_s": {},
-            "info": self._info[1],
-        }
+        changes: dict[str, Any] = {"agent": camera.name, "timings_s": {}, "info": self._info[1]}
+        changes["facts"] = facts
         if not self._recipe.amodal:
             changes["draw_amodal"] = None
         return replace(frame, **changes)

@@ -89,14 +89,15 @@ class ShardWriter:
             name = f"{clip.number:06d}"
             if cameras > 1:
                 name += f"_{camera.name}"
-            formats = {}
+            formats: dict[str, DatasetFormat] = {}
+            shared: dict[Any, Any] = {}
             for entry in self._recipe.formats:
                 kind = format_class(entry)
                 if entry in self._own:
                     formats[entry] = self._own[entry]
                 else:
                     formats[entry] = kind(self._folder / entry / clip.split / name)
-                    formats[entry].flow = self._recipe.flow
+                    formats[entry].flow, formats[entry].shared = self._recipe.flow, shared
             self._sequences[camera.name] = _Sequence(
                 name, clip.sequence(place, cameras), formats, {one: [] for one in formats}
             )

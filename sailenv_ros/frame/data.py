@@ -23,6 +23,7 @@ from sailenv_ros.types.scene_info import SceneInfo, SceneObject
 from sailenv_ros.types.views import VIEWS, view_spec
 
 if TYPE_CHECKING:
+    from sailenv_ros.frame.language.scene_facts import SceneFacts
     from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 
 __all__ = ["DrawAmodal", "FrameData"]
@@ -79,6 +80,8 @@ class FrameData(RebuiltByFields, Mapping[str, NDArray[Any]]):
         or they are not known (files of data sets do not have them).
     exposure : float
         Stops that the picture was brightened by, besides the scene's.
+    facts : SceneFacts or None
+        What touches, lies in what and is made of what at its instant; None if nobody asked.
     """
 
     agent: str
@@ -99,6 +102,7 @@ class FrameData(RebuiltByFields, Mapping[str, NDArray[Any]]):
     draw_amodal: DrawAmodal | None = None
     row_poses: RowPoses | None = None
     exposure: float = 0.0
+    facts: SceneFacts | None = None
 
     def __post_init__(self) -> None:
         height, width = self.camera.intrinsics.height, self.camera.intrinsics.width

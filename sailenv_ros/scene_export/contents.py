@@ -10,6 +10,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.scene_export.light_map import ExportedLight
+from sailenv_ros.scene_export.motion import ExportedMotion
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import Instance
@@ -39,10 +44,16 @@ class ExportedPiece:
     instance : Instance
     parts : tuple of ModelPart
         In the body frame, before the body's scale; materials have the light of lamps as emission.
+    deforms : bool
+        True for people, whose vertices move.
+    light_places : tuple of (V, 2) float32
+        Where the vertices of each part are in the scene's light map; none without one.
     """
 
     instance: Instance
     parts: tuple[ModelPart, ...]
+    deforms: bool = False
+    light_places: tuple[NDArray[np.float32], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,6 +170,10 @@ class ExportedScene:
     cameras : tuple of ExportedCamera
     gravity : (3,) tuple of float
         World frame [m/s²].
+    motion : ExportedMotion or None
+        How it moves from there; None for the instant alone.
+    light_map : ExportedLight or None
+        Its baked light, instead of lights; None leaves light to these.
     """
 
     name: str
@@ -167,6 +182,8 @@ class ExportedScene:
     environment: Environment | None = None
     cameras: tuple[ExportedCamera, ...] = ()
     gravity: Vector3 = (0.0, 0.0, -9.81)
+    motion: ExportedMotion | None = None
+    light_map: ExportedLight | None = None
 
     @cached_property
     def parts(self) -> tuple[ModelPart, ...]:

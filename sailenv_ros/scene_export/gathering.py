@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterable, Sequence
 from contextlib import closing
+from typing import Literal
 
 import numpy as np
 
@@ -17,11 +19,14 @@ from sailenv_ros.scene_export.contents import (
     ExportedPiece,
     ExportedScene,
 )
+from sailenv_ros.scene_export.light_map import LitParts, light_of
+from sailenv_ros.scene_export.motion import Moment, check_samples, motion_of
 from sailenv_ros.scene_export.names import identifier
 from sailenv_ros.scene_export.sharing import Sharing
 from sailenv_ros.simulation.agent_table import AgentTable
 from sailenv_ros.space.outlines import solids_of
-from sailenv_ros.types.agents import AgentSpec
+from sailenv_ros.types.agents import AgentSpec, due_steps
+from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.labels import CategoryTable
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.model import (
@@ -41,20 +46,44 @@ from sailenv_ros.world.build import build_world
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.world import World
 
-__all__ = ["agents_in", "asset_world", "exported_asset", "exported_world", "scaled_shape"]
+__all__ = [
+    "agents_in",
+    "asset_world",
+    "exported_asset",
+    "exported_world",
+    "scaled_shape",
+    "with_motion",
+]
 
 Vector3 = tuple[float, float, float]
 
 
-def exported_world(world: World, agents: AgentTable | None = None) -> ExportedScene:
-    """Return a world as it is now, with the cameras of agents."""
-    contents = world.snapshot().contents
+def exported_world(
+    world: World, agents: AgentTable | None = None, *, light: Literal["lamps", "baked"] = "lamps"
+) -> ExportedScene:
+    """Return a world as it is now, with the cameras of agents.
+
+    Raises
+    ------
+    InvalidRequest
+        If its light is wanted as it was baked, and is not.
+    """
+    light_map = light_of(world) if light == "baked" else None
+    lit = None if light_map is None else LitParts(light_map)
+    snapshot = world.snapshot()
+    contents = snapshot.contents
     lamps = _Lamps(contents.lights)
     pieces: dict[int, list[ExportedPiece]] = {}
     for drawn in contents.instances:
         instance = drawn.instance
         owner = instance.parent if instance.is_part else instance.id
-        piece = ExportedPiece(instance=instance, parts=lamps.lit(drawn))
+        parts = lamps.lit(drawn)
+        if instance.id in snapshot.deformations:
+            parts = _deformed(parts, snapshot.deformations[instance.id])
+        parts, places = (parts, ()) if lit is None else lit.of(instance.id, parts)
+        piece = ExportedPiece(
+            instance=instance, parts=parts, deforms=drawn.deforms, light_places=places
+        )
         pieces.setdefault(owner, []).append(piece)
     for own in pieces.values():
         own.sort(key=lambda piece: piece.instance.is_part)
@@ -73,7 +102,41 @@ def exported_world(world: World, agents: AgentTable | None = None) -> ExportedSc
             for record in table
         ),
         gravity=world.gravity,
+        light_map=light_map,
     )
+
+
+def with_motion(
+    scene: ExportedScene, world: World, agents: AgentTable, duration_s: float, rate_hz: float
+) -> ExportedScene:
+    """Step a world on; return the scene with how it moves meanwhile.
+
+    Parameters
+    ----------
+    scene : ExportedScene
+        The world as it is now.
+    world : World
+    agents : AgentTable
+    duration_s, rate_hz : float
+        So long [s], with so many samples a second.
+
+    Raises
+    ------
+    InvalidRequest
+        If there are too few or too many samples.
+    """
+    count = math.floor(duration_s * rate_hz + 1e-9) + 1
+    check_samples(count)
+    moments, taken = [], 0
+    for due in due_steps(rate_hz, count):
+        world.step(due - taken)
+        taken = due
+        cameras = {one.spec.name: agents.camera(one, world).pose for one in agents}
+        moments.append(
+            Moment(time_s=1e-9 * world.sim_time_ns, states=world.states(), cameras=cameras)
+        )
+    ids = [body.instance.id for body in scene.bodies]
+    return dataclasses.replace(scene, motion=motion_of(moments, ids, rate_hz))
 
 
 def agents_in(world: World, specs: Iterable[AgentSpec]) -> AgentTable:
@@ -169,6 +232,17 @@ class _Lamps:
                 material, emission=(red, green, blue), glow=(0.0, 0.0, 0.0)
             )
         return self._made[key]
+
+
+def _deformed(parts: Sequence[ModelPart], deformation: Deformation) -> tuple[ModelPart, ...]:
+    """Return parts with their vertices where they are now."""
+    return tuple(
+        dataclasses.replace(
+            part,
+            mesh=dataclasses.replace(part.mesh, positions=moved.positions, normals=moved.normals),
+        )
+        for part, moved in zip(parts, deformation.meshes, strict=True)
+    )
 
 
 def _with(part: ModelPart, material: Material) -> ModelPart:

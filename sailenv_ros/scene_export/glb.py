@@ -11,7 +11,7 @@ KHR_materials_emissive_strength.
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from sailenv_ros.assets.gltf_description import glb_with
@@ -25,18 +25,25 @@ from sailenv_ros.scene_export.contents import (
 from sailenv_ros.scene_export.extras import body_extras, camera_extras, instance_extras
 from sailenv_ros.scene_export.glb_buffers import GlbBuffers
 from sailenv_ros.scene_export.glb_lights import LIGHTS, gltf_camera, gltf_light
+from sailenv_ros.scene_export.glb_motion import GlbMotion
 from sailenv_ros.scene_export.losses import camera_losses, light_losses, physics_losses
 from sailenv_ros.scene_export.optics import light_pose, looking_back
 from sailenv_ros.scene_export.textures import Textures, texture_slots
+from sailenv_ros.types.deformation import MovedMesh
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
-from sailenv_ros.types.model import Material, ModelPart
+from sailenv_ros.types.model import Material
 from sailenv_ros.version import __version__
 
 __all__ = ["write_glb"]
 
+LIGHT_MAP = "MOZ_lightmap"
+"""Mozilla, "MOZ_lightmap": radiance is the base colour times this texture times its intensity."""
+
 _FILE_FROM_WORLD = Pose(orientation_xyzw=(-0.5, -0.5, -0.5, 0.5))
 """The file's x, y, z are the world's y, z, x."""
+
+LOST_BY_BAKING = "light is in the light map (MOZ_lightmap) alone; what can move has none"
 
 _BODY_FROM_FILE = (0.5, 0.5, 0.5, 0.5)
 
@@ -52,7 +59,7 @@ def write_glb(scene: ExportedScene, stem: str) -> Written:
     made = _GlbWriter(scene)
     losses = (
         *physics_losses(scene, "glTF", extras=True),
-        *light_losses(scene, "glTF"),
+        *(light_losses(scene, "glTF") if scene.light_map is None else (LOST_BY_BAKING,)),
         *camera_losses(scene, "glTF"),
     )
     return Written(data=made.data(), losses=losses)
@@ -64,8 +71,9 @@ class _GlbWriter:
         self._buffers = GlbBuffers()
         self._textures = Textures()
         self._images: dict[str, int] = {}
-        self._materials: dict[int, int] = {}
-        self._meshes: dict[tuple[tuple[int, int], ...], int] = {}
+        self._materials: dict[tuple[int, bool], int] = {}
+        self._meshes: dict[tuple[tuple[int, ...], ...], int] = {}
+        self._motion = None if scene.motion is None else GlbMotion(scene.motion, self._buffers)
         self._tree: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": f"sailenv_ros {__version__}"},
             "scene": 0,
@@ -76,14 +84,19 @@ class _GlbWriter:
         """Return the whole file."""
         roots = self._tree["scenes"][0]["nodes"]
         roots += [self._add_body(body) for body in self._scene.bodies]
-        roots += [self._add_light(light) for light in self._scene.lights]
+        # All of them are in the light map, if there is one.
+        lights = self._scene.lights if self._scene.light_map is None else ()
+        roots += [self._add_light(light) for light in lights]
         for camera in self._scene.cameras:
             extras = camera_extras(camera.intrinsics)
             entry = {"name": camera.name, **gltf_camera(camera.intrinsics), "extras": extras}
             node = {"name": camera.name, "camera": self._append("cameras", entry)}
             roots.append(self._append("nodes", {**node, **_looking(camera.pose)}))
-        if self._scene.lights:
-            self._tree["extensionsUsed"] = [LIGHTS]
+            self._follow(roots[-1], "cameras", camera.name, _looking)
+        if lights or self._scene.light_map is not None:
+            self._tree["extensionsUsed"] = [LIGHTS if lights else LIGHT_MAP]
+        if self._motion is not None and self._motion.moves:
+            self._tree["animations"] = [self._motion.entry()]
         views, binary = self._buffers.finished()
         self._tree["accessors"] = self._buffers.accessors
         self._tree["bufferViews"] = views
@@ -100,20 +113,43 @@ class _GlbWriter:
 
     def _add_body(self, body: ExportedBody) -> int:
         own, *labelled = body.pieces
-        pose = _FILE_FROM_WORLD.carried(body.pose).turned(_BODY_FROM_FILE)
-        node = {**self._node(own), **_placed(pose)}
+        node = {**self._node(own), **_standing(body.pose)}
         x, y, z = body.scale
         if body.scale != (1.0, 1.0, 1.0):
             node["scale"] = [y, z, x]
         node["extras"].update(body_extras(body))
         if labelled:
-            node["children"] = [self._append("nodes", self._node(piece)) for piece in labelled]
-        return self._append("nodes", node)
+            node["children"] = [self._add_piece(piece) for piece in labelled]
+        number = self._append("nodes", node)
+        self._deform(number, own)
+        self._follow(number, "bodies", body.instance.id, _standing)
+        return number
+
+    def _add_piece(self, piece: ExportedPiece) -> int:
+        number = self._append("nodes", self._node(piece))
+        self._deform(number, piece)
+        return number
+
+    def _follow(
+        self, node: int, kind: str, key: int | str, placed: Callable[[Pose], dict[str, Any]]
+    ) -> None:
+        """Let a node follow what the motion knows of it."""
+        if self._motion is not None and key in (poses := getattr(self._scene.motion, kind)):
+            self._motion.add_poses(node, poses[key], placed)
+
+    def _deform(self, node: int, piece: ExportedPiece) -> None:
+        if self._motion is not None and self._samples(piece):
+            self._motion.add_weights(node)
+
+    def _samples(self, piece: ExportedPiece) -> Sequence[Sequence[MovedMesh]]:
+        """Return the shapes of a piece, a sample each; none where it keeps its own."""
+        motion = self._scene.motion
+        return () if motion is None else motion.meshes.get(piece.instance.id, ())
 
     def _node(self, piece: ExportedPiece) -> dict[str, Any]:
         node: dict[str, Any] = {"name": piece.instance.name}
         if piece.parts:
-            node["mesh"] = self._mesh(piece.instance.asset, piece.parts)
+            node["mesh"] = self._mesh(piece)
         return {**node, "extras": instance_extras(piece.instance)}
 
     def _add_light(self, light: Light) -> int:
@@ -124,21 +160,35 @@ class _GlbWriter:
 
     # -- meshes and materials --------------------------------------------------------------
 
-    def _mesh(self, name: str, parts: Sequence[ModelPart]) -> int:
-        key = tuple((id(part.mesh), id(part.material)) for part in parts)
+    def _mesh(self, piece: ExportedPiece) -> int:
+        parts, samples, places = piece.parts, self._samples(piece), piece.light_places
+        name = piece.instance.asset
+        key: tuple[tuple[int, ...], ...] = tuple(
+            (id(part.mesh), id(part.material)) for part in parts
+        )
+        if places:
+            key = (*key, (piece.instance.id,))
         if key not in self._meshes:
             primitives = []
-            for part in parts:
+            for place, part in enumerate(parts):
                 attributes, indices = self._buffers.mesh(part.mesh)
-                material = self._material(part.material)
-                primitives.append(
-                    {"attributes": attributes, "indices": indices, "material": material}
-                )
-            self._meshes[key] = self._append("meshes", {"name": name, "primitives": primitives})
+                if places:
+                    attributes = {**attributes, "TEXCOORD_1": self._buffers.places(places[place])}
+                material = self._material(part.material, lit=bool(places))
+                primitive = {"attributes": attributes, "indices": indices, "material": material}
+                if self._motion is not None and samples:
+                    shapes = [sample[place] for sample in samples]
+                    primitive["targets"] = self._motion.targets(part, shapes)
+                primitives.append(primitive)
+            entry: dict[str, Any] = {"name": name, "primitives": primitives}
+            if samples:
+                entry["weights"] = [1.0] + [0.0] * (len(samples) - 1)
+            self._meshes[key] = self._append("meshes", entry)
         return self._meshes[key]
 
-    def _material(self, material: Material) -> int:
-        if id(material) not in self._materials:
+    def _material(self, material: Material, *, lit: bool) -> int:
+        own = id(material), lit
+        if own not in self._materials:
             entry: dict[str, Any] = {
                 "pbrMetallicRoughness": {
                     "baseColorFactor": list(material.base_colour),
@@ -162,8 +212,17 @@ class _GlbWriter:
                 entry["alphaCutoff"] = material.alpha_cutoff
             if material.double_sided:
                 entry["doubleSided"] = True
-            self._materials[id(material)] = self._append("materials", entry)
-        return self._materials[id(material)]
+            if lit:
+                entry["extensions"] = {LIGHT_MAP: self._light_map()}
+            self._materials[own] = self._append("materials", entry)
+        return self._materials[own]
+
+    def _light_map(self) -> dict[str, Any]:
+        """Return how a material finds its light."""
+        light = self._scene.light_map
+        assert light is not None
+        texture = self._texture(light.texture, alpha=True)  # without loss
+        return {"index": texture, "texCoord": 1, "intensity": light.white}
 
     def _texture(self, texture: Any, *, alpha: bool) -> int:
         picture = self._textures.of(texture, alpha=alpha)
@@ -173,6 +232,10 @@ class _GlbWriter:
             source = self._append("images", image)
             self._images[picture.name] = self._append("textures", {"source": source})
         return self._images[picture.name]
+
+
+def _standing(pose: Pose) -> dict[str, Any]:
+    return _placed(_FILE_FROM_WORLD.carried(pose).turned(_BODY_FROM_FILE))
 
 
 def _placed(pose: Pose) -> dict[str, Any]:

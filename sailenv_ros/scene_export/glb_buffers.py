@@ -28,6 +28,7 @@ class GlbBuffers:
         self._meshes: dict[int, tuple[dict[str, int], int]] = {}
         self._vectors, self._uvs, self._indices = io.BytesIO(), io.BytesIO(), io.BytesIO()
         self._pictures: list[bytes] = []
+        self._samples, self._of_samples = io.BytesIO(), list[dict[str, Any]]()
 
     def mesh(self, mesh: Mesh) -> tuple[dict[str, int], int]:
         """Return the accessors of a mesh's attributes by their names, and that of its indices."""
@@ -42,6 +43,32 @@ class GlbBuffers:
             }
             self._meshes[id(mesh)] = attributes, self._numbers(mesh)
         return self._meshes[id(mesh)]
+
+    def places(self, uvs: NDArray[Any]) -> int:
+        """Return the accessor of texture coordinates whose v runs down."""
+        return self._vertices(self._uvs, uvs, 1)
+
+    def moved(self, positions: NDArray[Any], by: NDArray[Any], *, bounds: bool) -> int:
+        """Return the accessor of what vertices of the body's axes become, less what they are."""
+        away = (by.astype(np.float64) - positions)[:, [1, 2, 0]]
+        return self._vertices(self._vectors, away, 0, bounds=bounds)
+
+    def samples(self, values: NDArray[Any], *, bounds: bool = False) -> int:
+        """Return the accessor of numbers of an animation, (N,) or (N, K)."""
+        stream, values = self._samples, np.ascontiguousarray(values, "<f4")
+        accessor: dict[str, Any] = {
+            "byteOffset": stream.tell(),
+            "componentType": _FLOAT,
+            "count": len(values),
+            "type": "SCALAR" if values.ndim == 1 else f"VEC{values.shape[1]}",
+        }
+        if bounds:
+            accessor["min"] = [float(values.min())]
+            accessor["max"] = [float(values.max())]
+        stream.write(values.tobytes())
+        self.accessors.append(accessor)
+        self._of_samples.append(accessor)
+        return len(self.accessors) - 1
 
     def picture(self, picture: Picture) -> int:
         """Return the number of the buffer view of a picture file; call it once for each."""
@@ -61,6 +88,13 @@ class GlbBuffers:
             if number < 2:
                 view["byteStride"] = 12 if number == 0 else 8
             views.append(view)
+            data += block
+        if self._of_samples:
+            for accessor in self._of_samples:
+                accessor["bufferView"] = len(views)
+            data += bytes(-len(data) % 4)
+            block = self._samples.getvalue()
+            views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(block)})
             data += block
         return views, bytes(data + bytes(-len(data) % 4))
 

@@ -6,7 +6,10 @@ from collections.abc import Iterator
 
 from sailenv_ros.scene_export.contents import ExportedScene
 
-__all__ = ["camera_losses", "counted", "light_losses", "physics_losses"]
+__all__ = ["camera_losses", "counted", "light_losses", "motion_losses", "physics_losses"]
+
+MOVING = (".glb", ".usda", ".usdz")
+"""Formats that hold motion."""
 
 
 def counted(count: int, noun: str) -> str:
@@ -51,3 +54,20 @@ def camera_losses(scene: ExportedScene, name: str, *, shifts: bool = False) -> I
     off = sum(bool(lens.cx_offset_px or lens.cy_offset_px) for lens in lenses)
     if off and not shifts:
         yield f"the principal points of {counted(off, 'camera')} have no equal in {name}"
+
+
+def motion_losses(scene: ExportedScene, suffix: str) -> Iterator[str]:
+    """Yield what of a motion is left out."""
+    motion = scene.motion
+    if motion is None:
+        return
+    if suffix not in MOVING:
+        yield f"{suffix} has no motion; the first moment was written"
+        return
+    stiff = sum(
+        piece.deforms and piece.instance.id not in motion.meshes
+        for body in scene.bodies
+        for piece in body.pieces
+    )
+    if stiff:
+        yield f"{counted(stiff, 'person')} keep their shape, which frames of files do not have"

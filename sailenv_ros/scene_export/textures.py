@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from sailenv_ros.assets.glb import JPEG_QUALITY
+from sailenv_ros.frame.pictures.codecs import encode_jpeg, encode_png
 from sailenv_ros.types.model import Material, Texture
 
 __all__ = ["SLOTS", "Picture", "Textures", "texture_slots"]
@@ -87,12 +87,7 @@ def texture_slots(material: Material) -> Iterator[tuple[str, Texture, bool]]:
 
 def _stored(texture: Texture, *, lossless: bool, alpha: bool) -> bytes:
     """Return the bytes of a JPEG file, of the quality of those in packs, or of a PNG."""
-    from PIL import Image
-
-    picture = Image.fromarray(np.asarray(texture)).convert("RGBA" if alpha else "RGB")
-    stored = io.BytesIO()
+    picture = np.ascontiguousarray(texture[..., : 4 if alpha else 3])
     if lossless:
-        picture.save(stored, format="PNG")
-    else:
-        picture.save(stored, format="JPEG", quality=JPEG_QUALITY, subsampling=0)
-    return stored.getvalue()
+        return encode_png(picture)
+    return encode_jpeg(picture, JPEG_QUALITY, full_colour=True)

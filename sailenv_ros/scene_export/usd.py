@@ -10,11 +10,12 @@ Pixar, "OpenUSD" 25.11; Alliance for OpenUSD, "Core Specification" 1.0.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from sailenv_ros.scene_export.contents import ExportedBody, ExportedPiece, ExportedScene, Written
 from sailenv_ros.scene_export.losses import camera_losses, counted
 from sailenv_ros.scene_export.names import FreeNames, identifier
+from sailenv_ros.scene_export.optics import looking_back
 from sailenv_ros.scene_export.trees import together
 from sailenv_ros.scene_export.usd_geometry import UsdGeometry, write_place
 from sailenv_ros.scene_export.usd_lights import write_camera, write_light, write_sky
@@ -27,6 +28,7 @@ from sailenv_ros.scene_export.usd_physics import (
 )
 from sailenv_ros.scene_export.usd_text import UsdText, number, quoted, tokens, vector
 from sailenv_ros.scene_export.usdz import usdz_bytes
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.version import __version__
 
 __all__ = ["write_usda", "write_usdz"]
@@ -37,8 +39,7 @@ HEAD = """#usda 1.0
     doc = "{doc}"
     kilogramsPerUnit = 1
     metersPerUnit = 1
-    timeCodesPerSecond = 1
-    upAxis = "Z"
+{times}    upAxis = "Z"
 )
 """
 
@@ -103,7 +104,8 @@ class _UsdWriter:
             self._write_lights()
             self._write_cameras()
         doc = f"{scene.name}, written by sailenv_ros"
-        self.data = HEAD.format(name=self._root, doc=doc).encode() + b"\n" + text.data()
+        head = HEAD.format(name=self._root, doc=doc, times=_times(scene))
+        self.data = head.encode() + b"\n" + text.data()
         pictures = self._materials.textures.pictures.values()
         self.pictures = {picture.name: picture.data for picture in pictures}
 
@@ -138,10 +140,12 @@ class _UsdWriter:
         name = self._paths[body.name].rpartition("/")[2]
         with text.prim("Xform", name, schemas=schemas, metadata=metadata):
             self._write_labels(body.pieces[0])
-            write_mass(text, body)
+            motion = self._scene.motion
+            write_mass(text, body, follows=motion is not None and body.instance.id in motion.bodies)
             if filtered:
                 text.relate("physics:filteredPairs", *filtered)
-            write_place(text, body.pose)
+            poses = () if motion is None else motion.bodies.get(body.instance.id, ())
+            write_place(text, body.pose, samples=self._by_codes(poses))
             own, *labelled = body.pieces
             self._geometry.write_piece(own, body.scale, names.take("geometry"))
             for piece in labelled:
@@ -190,8 +194,30 @@ class _UsdWriter:
                 write_light(self._text, light, names.take(light.name))
 
     def _write_cameras(self) -> None:
-        names = FreeNames()
+        names, motion = FreeNames(), self._scene.motion
         if self._scene.cameras:
             with self._text.prim("Scope", "Cameras"):
                 for camera in self._scene.cameras:
-                    write_camera(self._text, camera, names.take(camera.name))
+                    poses = () if motion is None else motion.cameras.get(camera.name, ())
+                    samples = self._by_codes([looking_back(pose) for pose in poses])
+                    write_camera(self._text, camera, names.take(camera.name), samples)
+
+    def _by_codes(self, poses: Sequence[Pose]) -> dict[float, Pose]:
+        """Return poses of the motion by their time codes."""
+        motion = self._scene.motion
+        if motion is None or not poses:
+            return {}
+        return dict(zip(motion.codes, poses, strict=True))
+
+
+def _times(scene: ExportedScene) -> str:
+    """Return the lines of a layer that tell its time codes."""
+    motion = scene.motion
+    if motion is None:
+        return "    timeCodesPerSecond = 1\n"
+    rate = number(motion.rate_hz)
+    end = number(motion.codes[-1])
+    return (
+        f"    endTimeCode = {end}\n    framesPerSecond = {rate}\n    startTimeCode = 0\n"
+        f"    timeCodesPerSecond = {rate}\n"
+    )

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from sailenv_ros.scene_export.names import FreeNames
 from sailenv_ros.scene_export.textures import texture_slots
 from sailenv_ros.scene_export.usd_materials import UsdMaterials
 from sailenv_ros.scene_export.usd_text import UsdText, array, quoted, vector, vectors
+from sailenv_ros.types.deformation import MovedMesh
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import ModelPart
 
@@ -43,7 +45,12 @@ class UsdGeometry:
         self._path = path
         self._classes: dict[Key, str] = {}
         pieces = [piece for body in scene.bodies for piece in body.pieces if piece.parts]
-        self._counts = Counter(_key(piece.parts) for piece in pieces)
+        motion = scene.motion
+        self._moved = {} if motion is None else motion.meshes
+        self._codes = [] if motion is None else motion.codes
+        self._counts = Counter(
+            _key(piece.parts) for piece in pieces if piece.instance.id not in self._moved
+        )
         self._shared = {_key(piece.parts): piece for piece in pieces}
 
     def write_classes(self) -> None:
@@ -71,11 +78,13 @@ class UsdGeometry:
                 text.attribute("float3", "xformOp:scale", vector(scale))
                 text.attribute("uniform token[]", "xformOpOrder", '["xformOp:scale"]')
             if found is None:
-                self._write_parts(piece.parts)
+                self._write_parts(piece.parts, self._moved.get(piece.instance.id, ()))
 
-    def _write_parts(self, parts: Sequence[ModelPart]) -> None:
+    def _write_parts(
+        self, parts: Sequence[ModelPart], samples: Sequence[Sequence[MovedMesh]] = ()
+    ) -> None:
         text, names = self._text, FreeNames()
-        for part in parts:
+        for place, part in enumerate(parts):
             name = names.take(part.names[0] if part.names else "mesh")
             mesh = part.mesh
             with text.prim("Mesh", name, schemas=["MaterialBindingAPI"]):
@@ -86,10 +95,21 @@ class UsdGeometry:
                 write_points(text, points, triangles)
                 normals = vectors(mesh.normals[used], 6)
                 text.attribute("normal3f[]", "normals", normals, of="vertex")
+                if samples:
+                    moved = [sample[place] for sample in samples]
+                    self._write_samples("point3f[]", "points", [m.positions[used] for m in moved])
+                    self._write_samples("normal3f[]", "normals", [m.normals[used] for m in moved])
+                    ends = [np.stack([m.positions[used].min(0), m.positions[used].max(0)])
+                            for m in moved]  # fmt: skip
+                    self._write_samples("float3[]", "extent", ends)
                 if any(texture_slots(part.material)):
                     uvs = vectors(mesh.uvs[used], 7)
                     text.attribute("texCoord2f[]", "primvars:st", uvs, of="vertex")
                 text.relate("material:binding", self._materials.path(part.material))
+
+    def _write_samples(self, kind: str, name: str, arrays: Sequence[NDArray[Any]]) -> None:
+        values = (vectors(array, 6) for array in arrays)
+        self._text.samples(kind, name, dict(zip(self._codes, values, strict=True)))
 
 
 def used_points(
@@ -110,14 +130,32 @@ def write_points(text: UsdText, points: NDArray[Any], triangles: NDArray[Any]) -
     text.attribute("uniform token", "subdivisionScheme", quoted("none"))
 
 
-def write_place(text: UsdText, pose: Pose, *, more: Iterable[str] = ()) -> None:
-    """Write the pose of an Xform; `more` are the operations that follow it."""
-    x, y, z, w = pose.orientation_xyzw
-    text.attribute("quatd", "xformOp:orient", vector((w, x, y, z)))
+def write_place(
+    text: UsdText,
+    pose: Pose,
+    *,
+    more: Iterable[str] = (),
+    samples: Mapping[float, Pose] = MappingProxyType({}),
+) -> None:
+    """Write the pose of an Xform; `more` are the operations that follow it.
+
+    Poses by time codes are `samples`.
+    """
+    text.attribute("quatd", "xformOp:orient", _turn(pose))
     text.attribute("double3", "xformOp:translate", vector(pose.position_m))
+    if samples:
+        turns = {code: _turn(one) for code, one in samples.items()}
+        text.samples("quatd", "xformOp:orient", turns)
+        places = {code: vector(one.position_m) for code, one in samples.items()}
+        text.samples("double3", "xformOp:translate", places)
     order = ["xformOp:translate", "xformOp:orient", *more]
     names = ", ".join(quoted(name) for name in order)
     text.attribute("uniform token[]", "xformOpOrder", f"[{names}]")
+
+
+def _turn(pose: Pose) -> str:
+    x, y, z, w = pose.orientation_xyzw
+    return vector((w, x, y, z))
 
 
 def _key(parts: Sequence[ModelPart]) -> Key:

@@ -7,12 +7,14 @@ one factor. Pixar, "UsdLux: USD Lighting Schema", and "UsdGeomCamera".
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from sailenv_ros.scene_export.contents import ExportedCamera
 from sailenv_ros.scene_export.extras import camera_extras
 from sailenv_ros.scene_export.optics import light_pose, looking_back, point_intensity
 from sailenv_ros.scene_export.usd_geometry import write_place
 from sailenv_ros.scene_export.usd_text import UsdText, number, quoted, vector
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
 
 __all__ = ["write_camera", "write_light", "write_sky"]
@@ -75,8 +77,10 @@ def write_sky(text: UsdText, environment: Environment, name: str) -> None:
         text.attribute("float", "inputs:intensity", "1")
 
 
-def write_camera(text: UsdText, camera: ExportedCamera, name: str) -> None:
-    """Write a camera of a lens's focal length and principal point."""
+def write_camera(
+    text: UsdText, camera: ExportedCamera, name: str, samples: Mapping[float, Pose]
+) -> None:
+    """Write a camera of a lens's focal length and principal point, and its poses by time codes."""
     lens = camera.intrinsics
     # An orthographic aperture is the width that is seen.
     width = 10.0 * lens.width / lens.fx if lens.is_parallel else APERTURE
@@ -106,7 +110,7 @@ def write_camera(text: UsdText, camera: ExportedCamera, name: str) -> None:
         down = lens.cy_offset_px / lens.height * height
         text.attribute("float", "horizontalApertureOffset", number(across))
         text.attribute("float", "verticalApertureOffset", number(down))
-        write_place(text, looking_back(camera.pose))
+        write_place(text, looking_back(camera.pose), samples=samples)
 
 
 def kind(value: object) -> str:

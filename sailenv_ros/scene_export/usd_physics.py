@@ -35,13 +35,20 @@ def body_schemas(body: ExportedBody) -> list[str]:
     return ["PhysicsRigidBodyAPI", "PhysicsMassAPI"] if body.mass_kg > 0.0 else []
 
 
-def write_mass(text: UsdText, body: ExportedBody) -> None:
-    """Write mass, centre and moments of inertia, and whether it stands still all the same."""
+def write_mass(text: UsdText, body: ExportedBody, *, follows: bool) -> None:
+    """Write mass, centre and moments of inertia, and whether it stands still all the same.
+
+    What follows poses by time codes pushes others, and nothing pushes it.
+    """
     if body.mass_kg > 0.0:
         text.attribute("float", "physics:mass", number(body.mass_kg))
         text.attribute("point3f", "physics:centerOfMass", vector(body.centre_m))
-        text.attribute("float3", "physics:diagonalInertia", vector(body.inertia_kg_m2))
-        text.attribute("quatf", "physics:principalAxes", "(1, 0, 0, 0)")
+        # People have none, as nothing turns them.
+        if min(body.inertia_kg_m2) > 0.0:
+            text.attribute("float3", "physics:diagonalInertia", vector(body.inertia_kg_m2))
+            text.attribute("quatf", "physics:principalAxes", "(1, 0, 0, 0)")
+        if follows:
+            text.attribute("bool", "physics:kinematicEnabled", "1")
         if body.static:
             text.attribute("bool", "physics:rigidBodyEnabled", "0")
 

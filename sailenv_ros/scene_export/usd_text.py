@@ -80,6 +80,11 @@ class UsdText:
         self.line(f'{INDENT}interpolation = "{of}"')
         self.line(")")
 
+    def samples(self, kind: str, name: str, values: Mapping[float, str]) -> None:
+        """Add the values of an attribute by time codes."""
+        told = ", ".join(f"{number(code)}: {value}" for code, value in values.items())
+        self.line(f"{kind} {name}.timeSamples = {{ {told} }}")
+
     def connect(self, kind: str, name: str, path: str) -> None:
         """Connect an input to an output."""
         self.line(f"{kind} {name}.connect = <{path}>")

@@ -5,7 +5,6 @@ A built `World` in, diagnostics out. The world is stepped, so it is one for this
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -14,6 +13,7 @@ import numpy as np
 from sailenv_ros.types.geometry import matrix_angle_deg
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
+from sailenv_ros.world.gaps import gaps
 from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
@@ -59,20 +59,10 @@ def overlaps(world: World, *, tolerance_m: float = 0.002) -> Iterator[Overlap]:
 
     The parts of a room stand in one another by construction; those pairs are left out.
     """
-    client = world.client
-    bodies = [
-        (body, client.getAABB(body.bullet_id, body.link)) for body in world.bodies if body.collides
-    ]
-    for (a, box_a), (b, box_b) in itertools.combinations(bodies, 2):
-        of_room = all("room" in body.placement.asset.tags for body in (a, b))
-        if of_room or _joined(a, b) or not _may_touch(box_a, box_b):
-            continue
-        points = client.getClosestPoints(
-            a.bullet_id, b.bullet_id, 0.0, linkIndexA=a.link, linkIndexB=b.link
-        )
-        depth = -min((point[8] for point in points), default=0.0)
-        if depth > tolerance_m:
-            yield Overlap(first=a.placement.name, second=b.placement.name, depth_m=depth)
+    for gap in gaps(world, 0.0, _belong_together):
+        if -gap.gap_m > tolerance_m:
+            names = (world.body(id_).placement.name for id_ in (gap.first, gap.second))
+            yield Overlap(first=next(names), second=next(names), depth_m=-gap.gap_m)
 
 
 def shifts(
@@ -133,12 +123,11 @@ def _distance(world: World, body: Body, probe: int, within_m: float) -> float:
     return float(min((point[8] for point in points), default=within_m))
 
 
+def _belong_together(a: Body, b: Body) -> bool:
+    of_room = all("room" in body.placement.asset.tags for body in (a, b))
+    return of_room or _joined(a, b)
+
+
 def _joined(a: Body, b: Body) -> bool:
     """Return whether one carries the other on a joint: they may stand in one another there."""
     return any(isinstance(x, JointedBody) and x.parent is y for x, y in ((a, b), (b, a)))
-
-
-def _may_touch(a: tuple[tuple[float, ...], ...], b: tuple[tuple[float, ...], ...]) -> bool:
-    low = np.maximum(a[0], b[0])
-    high = np.minimum(a[1], b[1])
-    return bool((low <= high).all())

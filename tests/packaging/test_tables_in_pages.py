@@ -26,6 +26,7 @@ from sailenv_ros.frame.motion import Motion, Tracks
 from tests.packaging.project import ROOT
 
 NAME = re.compile(r"`([a-z_A-Z]\w*)`")
+FORMAT = re.compile(r"`(\w[\w-]*)`")
 
 
 def rows(page: str, heading: str) -> list[tuple[str, str]]:
@@ -36,9 +37,9 @@ def rows(page: str, heading: str) -> list[tuple[str, str]]:
     return [(first, rest) for first, rest in found if not re.fullmatch(r"[ :-]+", first)]
 
 
-def names(page: str, heading: str) -> set[str]:
+def names(page: str, heading: str, pattern: re.Pattern[str] = NAME) -> set[str]:
     """Return the names in the first cells."""
-    return {name for first, _ in rows(page, heading) for name in NAME.findall(first)}
+    return {name for first, _ in rows(page, heading) for name in pattern.findall(first)}
 
 
 @pytest.fixture(scope="module")
@@ -94,5 +95,6 @@ def test_keys_of_recipes_and_of_their_parts() -> None:
 
 def test_formats_of_data_sets() -> None:
     """All of them; of a film of the views there is nothing to compare."""
-    assert names("recording.md", "Formats") | names("datasets.md", "Reading") == FORMATS.keys()
-    assert names("training.md", "Which format holds what") == FORMATS.keys() - {"mp4"}
+    told = names("recording.md", "Formats", FORMAT) | names("datasets.md", "Reading", FORMAT)
+    assert told == FORMATS.keys()
+    assert names("training.md", "Which format holds what", FORMAT) == FORMATS.keys() - {"mp4"}

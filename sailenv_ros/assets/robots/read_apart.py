@@ -19,7 +19,10 @@ from numpy.typing import NDArray
 from sailenv_ros.assets.safe_xml import XmlNode, read_xml
 from sailenv_ros.errors import AssetError
 
-__all__ = ["checked_tree", "read_apart"]
+__all__ = ["ANSWER", "checked_tree", "read_apart", "run_reader"]
+
+ANSWER = "scene.json"
+"""File that a reader writes last."""
 
 LIMIT_S = 120.0
 MEMORY_BYTES = 4 * 2**30
@@ -87,25 +90,44 @@ def read_apart(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[np.float64
     """
     with tempfile.TemporaryDirectory(prefix="sailenv-import-") as name:
         folder = Path(name)
-        command = [sys.executable, "-m", "sailenv_content.scene_import.robot_reader"]
-        command += [str(path.resolve()), str(folder), str(MEMORY_BYTES)]
-        package = str(Path(__file__).resolve().parents[3])
-        paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
-        try:
-            done = subprocess.run(
-                command,
-                env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
-                capture_output=True,
-                timeout=LIMIT_S,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            raise AssetError(path.name, f"reading it took longer than {LIMIT_S:g} s") from None
-        refused = folder / "refused.txt"
-        if refused.is_file():
-            raise AssetError(path.name, f"MuJoCo cannot read it: {refused.read_text('utf-8')}")
-        if done.returncode or not (folder / "scene.json").is_file():
-            raise AssetError(path.name, "its reader ended; it may be damaged, or too large")
-        read = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
+        run_reader("sailenv_content.scene_import.robot_reader", "MuJoCo", path, folder)
+        read = json.loads((folder / ANSWER).read_text(encoding="utf-8"))
         with np.load(folder / "arrays.npz", allow_pickle=False) as file:
             return read, {key: np.asarray(file[key], np.float64) for key in file.files}
+
+
+def run_reader(module: str, reader: str, path: Path, folder: Path) -> None:
+    """Have a file read in a process of its own, with so much time and memory.
+
+    Parameters
+    ----------
+    module : str
+        Gets the file, the folder and the bytes of memory. Writes `ANSWER`, or ``refused.txt``.
+    reader : str
+        Whose reader it is, for errors.
+    path, folder : Path
+        The file, and where the answer goes.
+
+    Raises
+    ------
+    AssetError
+        If it cannot be read so.
+    """
+    command = [sys.executable, "-m", module, str(path.resolve()), str(folder), str(MEMORY_BYTES)]
+    package = str(Path(__file__).resolve().parents[3])
+    paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
+    try:
+        done = subprocess.run(
+            command,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
+            capture_output=True,
+            timeout=LIMIT_S,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise AssetError(path.name, f"reading it took longer than {LIMIT_S:g} s") from None
+    refused = folder / "refused.txt"
+    if refused.is_file():
+        raise AssetError(path.name, f"{reader} cannot read it: {refused.read_text('utf-8')}")
+    if done.returncode or not (folder / ANSWER).is_file():
+        raise AssetError(path.name, "its reader ended; it may be damaged, or too large")

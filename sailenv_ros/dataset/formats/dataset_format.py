@@ -119,6 +119,8 @@ class DatasetFormat(ABC):
         False if it must be given all frames again after a break.
     needs_neighbours : bool
         True if its samples shall have the frames before and after theirs.
+    needs_facts : bool
+        True if its samples' frames shall have `SceneFacts` where a world is there to be asked.
     has_sequences : bool
         True if it is a sequence of which several fit into one folder, by `Sample.sequence`.
     is_shard : bool
@@ -138,6 +140,8 @@ class DatasetFormat(ABC):
         True if it has.
     packages : tuple of str
         Optional packages that it cannot do without.
+    shared : dict
+        What was found once for all formats that are given the same frames.
     """
 
     views: ClassVar[tuple[str, ...]] = ()
@@ -145,6 +149,7 @@ class DatasetFormat(ABC):
     is_sequence: ClassVar[bool] = False
     resumable: ClassVar[bool] = True
     needs_neighbours: ClassVar[bool] = False
+    needs_facts: ClassVar[bool] = False
     has_sequences: ClassVar[bool] = False
     is_shard: ClassVar[bool] = False
     needs_records: ClassVar[bool] = False
@@ -157,6 +162,7 @@ class DatasetFormat(ABC):
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.shared: dict[Any, Any] = {}
 
     @abstractmethod
     def add(self, sample: Sample) -> WriteResult:

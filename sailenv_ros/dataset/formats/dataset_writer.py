@@ -139,8 +139,9 @@ class DatasetWriter:
             name: made(self.folder / name if len(names) > 1 else self.folder)
             for name, made in classes.items()
         }
+        shared: dict[Any, Any] = {}
         for made_format in self._formats.values():
-            made_format.flow = flow
+            made_format.flow, made_format.shared = flow, shared
         self._next = 0
         # Those that cannot go on begin anew, with frames that the others have already.
         if all(made.resumable for made in classes.values()):

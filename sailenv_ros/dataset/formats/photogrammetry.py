@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.dataset.formats.data_files import write_png
-from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
+from sailenv_ros.dataset.formats.dataset_format import Record, Sample, WriteResult
+from sailenv_ros.dataset.formats.scene_folders import SceneFolders
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.lens_rays import reach_lines, reach_of, reach_of_points
@@ -81,31 +82,23 @@ class PointTracks:
     pixels: NDArray[np.float64]
 
 
-class PosedPictures(DatasetFormat):
+class PosedPictures(SceneFolders):
     """Base of formats that hold pictures, lenses, poses and points of scenes.
 
-    ``images/`` has the pictures. One folder is of one scene between two resets; of a recording of
-    several, the others have folders of their own, ``<scene>_<epoch>``.
+    ``images/`` has the pictures. Of several such formats that are written together, the first one
+    finds the points.
     """
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "instance")
-    is_sequence: ClassVar[bool] = True
-    has_sequences: ClassVar[bool] = True
-    resumable: ClassVar[bool] = False
-    title: ClassVar[str]
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
-        self._scenes: dict[Path, tuple[str, int]] = {}
         self._pictures: dict[Path, list[PosedPicture]] = {}
         self._places: dict[tuple[int, bytes], int] = {}
 
     def add(self, sample: Sample) -> WriteResult:
         """Write a frame's picture, and keep what its pixels see until all are known."""
-        frame, folder = sample.frame, self.folder / sample.sequence
-        scene = frame.scene, frame.epoch
-        if self._scenes.setdefault(folder, scene) != scene:
-            folder /= f"{frame.scene}_{frame.epoch}"
+        frame, folder = sample.frame, self.folder_of(sample)
         self.require_lens(frame.camera)
         poses = self._poses(frame)
         name = f"{sample.stem}.png"
@@ -122,7 +115,10 @@ class PosedPictures(DatasetFormat):
     def finish(self, records: Sequence[Record]) -> None:
         """Find the points and write what is known of all pictures together."""
         for folder, pictures in self._pictures.items():
-            self.write_scene(folder, pictures, _tracks(folder, pictures))
+            key = tuple(picture.number for picture in pictures)
+            if key not in self.shared:
+                self.shared[key] = _tracks(folder, pictures)
+            self.write_scene(folder, pictures, self.shared[key])
             shutil.rmtree(_seen_file(folder, 0).parent)
         self._pictures.clear()
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from sailenv_ros.frame.language.scene_graph import SceneGraph, holds
+from sailenv_ros.frame.language.relation_laws import holds
+from sailenv_ros.frame.language.scene_graph import SceneGraph
 from sailenv_ros.frame.language.seen_objects import NOT_OF_COLOUR, SeenObject
 from sailenv_ros.frame.language.wording import named
 
@@ -62,7 +63,7 @@ def _of(target: SeenObject, graph: SceneGraph) -> Iterator[Referring]:
         # Where something hardly seen ends in the picture is not known.
         if needs_clear and not all(one.clear for one in rivals):
             continue
-        if all(holds(kind, target, one, graph.width) is not None for one in rivals):
+        if all(holds(kind, target, one, graph.view) is not None for one in rivals):
             yield Referring(
                 text=text.format(target.category),
                 object=target.id,

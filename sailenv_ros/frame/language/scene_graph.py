@@ -1,32 +1,19 @@
-"""Relations between the objects of a frame, with the numbers that they follow from."""
+"""Objects of a frame and the relations between them, with the numbers that these follow from."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-import numpy as np
-
+from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.language.relation_laws import RELATIONS, Numbers, View, holds
+from sailenv_ros.frame.language.scene_facts import NO_FACTS, SceneFacts
 from sailenv_ros.frame.language.seen_objects import SeenObject, seen_objects, seen_parts
 
-__all__ = ["RELATIONS", "Relation", "SceneGraph", "holds", "scene_graph"]
-
-RESTS_M = 0.03
-"""Greatest distance between the bottom of what lies on something and the top of that [m]."""
-
-FURTHER = 1.15
-"""Factor by which two distances or heights differ where one is said to be the greater."""
-
-UPRIGHT = 0.999
-"""Least cosine between an axis of what carries something and the vertical."""
-
-APART_SHARE = 0.02
-"""Share of the picture's width between two objects of which one is said to be left of the other."""
-
-Numbers = Mapping[str, float]
+__all__ = ["Relation", "SceneGraph", "scene_graph"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,7 +25,7 @@ class Relation:
     kind : str
         One of `RELATIONS`.
     subject, object : int
-        Ids of the objects: the subject is left of the object, or on it.
+        Ids of the objects: the subject is left of the object, or on it. What is ``open`` is both.
     values : mapping of str to float
         Numbers that it follows from.
     """
@@ -55,8 +42,8 @@ class SceneGraph:
 
     Attributes
     ----------
-    width : int
-        Of the picture [px].
+    view : View
+        Of the camera, with the facts that are known beside the frame.
     objects : mapping of int to SeenObject
         By id, in ascending order; those that are not clear too.
     relations : tuple of Relation
@@ -65,7 +52,7 @@ class SceneGraph:
         Categories of parts that are seen; see `seen_parts`.
     """
 
-    width: int
+    view: View
     objects: Mapping[int, SeenObject]
     relations: tuple[Relation, ...]
     parts: frozenset[str] = frozenset()
@@ -80,80 +67,49 @@ class SceneGraph:
         return tuple(r for r in self.relations if r.kind == kind and r.subject == subject)
 
 
-def scene_graph(frame: Frame) -> SceneGraph:
-    """Return the graph of a frame; errors as of `seen_objects`."""
-    objects = seen_objects(frame)
-    width = frame.views["instance"].shape[1]
+def scene_graph(frame: Frame, facts: SceneFacts | None = None) -> SceneGraph:
+    """Return the graph of a frame.
+
+    Parameters
+    ----------
+    frame : Frame
+    facts : SceneFacts or None
+        Of its instant; None takes those of the frame, if a shutter that rolled did not end later.
+        Without any, nothing touches, supports or holds another thing, is in it, or is open.
+
+    Raises
+    ------
+    InvalidRequest
+        If the facts are of another instant; see `seen_objects` for others.
+    """
+    if facts is not None and facts.sim_time_ns != frame.stamp_ns:
+        accepted = f"the frame's, {frame.stamp_ns} ns"
+        raise InvalidRequest("time of the facts", f"{facts.sim_time_ns} ns", accepted)
+    known = facts or frame.facts or NO_FACTS
+    known = known if known.sim_time_ns == frame.stamp_ns else NO_FACTS
+    objects = seen_objects(frame, known)
+    pose = frame.camera.world_from_camera
+    view = View(
+        width=frame.views["instance"].shape[1],
+        camera_m=pose[:3, 3],
+        forward=pose[:3, 2],
+        facts=known,
+        stamp_ns=frame.stamp_ns,
+    )
     clear = [one for one in objects if one.clear]
     return SceneGraph(
-        width=width,
+        view=view,
         objects=MappingProxyType({one.id: one for one in objects}),
-        relations=tuple(_relations(clear, width)),
+        relations=tuple(_relations(clear, view)),
         parts=seen_parts(frame),
     )
 
 
-def holds(kind: str, first: SeenObject, second: SeenObject, width: int) -> Numbers | None:
-    """Return the numbers that a relation follows from; None if it is not so, or not clearly."""
-    return _LAWS[kind](first, second, width)
-
-
-def _relations(objects: list[SeenObject], width: int) -> Iterator[Relation]:
+def _relations(objects: Sequence[SeenObject], view: View) -> Iterator[Relation]:
     for kind in RELATIONS:
-        for first, second in itertools.permutations(objects, 2):
-            values = holds(kind, first, second, width)
+        for first, second in itertools.product(objects, repeat=2):
+            if (first is second) != (kind == "open"):
+                continue
+            values = holds(kind, first, second, view)
             if values is not None:
                 yield Relation(kind=kind, subject=first.id, object=second.id, values=values)
-
-
-def _on(first: SeenObject, second: SeenObject, width: int) -> Numbers | None:
-    gap = first.bottom_m - second.top_m
-    if abs(gap) > RESTS_M or not _is_over(first, second):
-        return None
-    return {"gap_m": gap, "bottom_m": first.bottom_m, "top_m": second.top_m}
-
-
-def _is_over(first: SeenObject, second: SeenObject) -> bool:
-    """Return whether the middle of one is over the other's box, which is the larger one."""
-    upright = int(np.argmax(np.abs(second.turn[2])))
-    if abs(second.turn[2, upright]) < UPRIGHT:
-        return False
-    offset = second.turn.T @ (first.middle_m - second.middle_m)
-    sides = [axis for axis in range(3) if axis != upright]
-    if any(abs(offset[axis]) > second.size_m[axis] / 2.0 for axis in sides):
-        return False
-    own = np.ptp(first.corners_m[:, :2], axis=0)
-    return bool(own.prod() < second.size_m[sides].prod())
-
-
-def _left_of(first: SeenObject, second: SeenObject, width: int) -> Numbers | None:
-    gap = second.box[0] - first.box[2]
-    return {"gap_px": float(gap)} if gap >= APART_SHARE * width else None
-
-
-def _right_of(first: SeenObject, second: SeenObject, width: int) -> Numbers | None:
-    return _left_of(second, first, width)
-
-
-def _nearer(first: SeenObject, second: SeenObject, width: int) -> Numbers | None:
-    if first.distance_m * FURTHER > second.distance_m:
-        return None
-    return {"distance_m": first.distance_m, "other_m": second.distance_m}
-
-
-def _taller(first: SeenObject, second: SeenObject, width: int) -> Numbers | None:
-    if first.height_m < second.height_m * FURTHER:
-        return None
-    return {"height_m": first.height_m, "other_m": second.height_m}
-
-
-_LAWS: Mapping[str, Callable[[SeenObject, SeenObject, int], Numbers | None]] = {
-    "on": _on,
-    "left of": _left_of,
-    "right of": _right_of,
-    "nearer than": _nearer,
-    "taller than": _taller,
-}
-
-RELATIONS = tuple(_LAWS)
-"""Kinds of relations: support, places in the picture, distances from the camera, heights."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -12,10 +13,19 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.language.colour_words import COLOUR_WORDS, colour_words
+from sailenv_ros.frame.language.scene_facts import NO_FACTS, SceneFacts
+from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.frame.truth.object_table import ObjectTable
 from sailenv_ros.types.labels import ROOM_PARTS, UNLABELLED_CATEGORY
 
-__all__ = ["LEAST_SHARE", "NOT_OF_COLOUR", "SeenObject", "seen_objects", "seen_parts"]
+__all__ = [
+    "LEAST_SHARE",
+    "NOT_OF_COLOUR",
+    "UPRIGHT",
+    "SeenObject",
+    "seen_objects",
+    "seen_parts",
+]
 
 LEAST_SHARE = 2e-4
 """Share of the picture from which an object is seen; with less it may be there, and nothing is said
@@ -23,6 +33,12 @@ that would be wrong if it were, or if it were not."""
 
 OF_COLOUR, NOT_OF_COLOUR = 0.8, 0.05
 """Share of its pixels from which an object is of a colour, and below which it clearly is not."""
+
+UPRIGHT = 0.999
+"""Least cosine between an axis of what stands upright and the vertical."""
+
+OF_MATERIAL = 0.8
+"""Share of its surface from which an object is made of a material."""
 
 NOT_NAMED = ROOM_PARTS | {"plane"}
 """Categories that no sentence names: parts of rooms, and the ground outside of them."""
@@ -52,6 +68,10 @@ class SeenObject:
         Rotation world-from-object.
     colours : mapping of str to float
         Shares of its pixels by `COLOUR_WORDS`; empty for frames without the view ``albedo``.
+    materials : mapping of str to float
+        Shares of its surface by `MATERIAL_WORDS`; empty without `SceneFacts`.
+    hidden : float
+        Share of its pixels in the picture that other things cover; NaN without amodal masks.
     """
 
     id: int
@@ -65,12 +85,30 @@ class SeenObject:
     size_m: NDArray[np.float64]
     turn: NDArray[np.float64]
     colours: Mapping[str, float] = field(default_factory=dict)
+    materials: Mapping[str, float] = field(default_factory=dict)
+    hidden: float = math.nan
+
+    @property
+    def material(self) -> str:
+        """Word for what it is mostly made of; empty if that is not clear."""
+        found = (word for word, share in self.materials.items() if word and share >= OF_MATERIAL)
+        return next(found, "")
 
     @property
     def colour(self) -> str:
         """Word for its colour; empty if there is none, or several."""
         found = (word for word, share in self.colours.items() if word and share >= OF_COLOUR)
         return next(found, "")
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether an axis of its box is vertical: else the box is higher than what is in it."""
+        return bool(np.abs(self.turn[2]).max() >= UPRIGHT)
+
+    def distance_to_box_m(self, point: NDArray[np.float64]) -> float:
+        """Return how far a point of the world is from its box; 0 inside [m]."""
+        offset = np.abs(self.turn.T @ (point - self.middle_m)) - 0.5 * self.size_m
+        return float(np.linalg.norm(offset.clip(min=0.0)))
 
     @property
     def bottom_m(self) -> float:
@@ -93,8 +131,14 @@ class SeenObject:
         return np.asarray(self.corners_m.mean(axis=0))
 
 
-def seen_objects(frame: Frame) -> tuple[SeenObject, ...]:
+def seen_objects(frame: Frame, facts: SceneFacts = NO_FACTS) -> tuple[SeenObject, ...]:
     """Return the objects that a frame shows, by their ids; parts of rooms are left out.
+
+    Parameters
+    ----------
+    frame : Frame
+    facts : SceneFacts
+        Of the same instant.
 
     Raises
     ------
@@ -105,11 +149,17 @@ def seen_objects(frame: Frame) -> tuple[SeenObject, ...]:
         raise InvalidRequest("views", tuple(frame.views), "a frame with 'instance' and states")
     table = frame.objects
     row_of = {id_: row for row, id_ in enumerate(table.ids.tolist())}
-    owned: dict[int, list[int]] = {}
-    for row in np.flatnonzero(table.visible_pixels).tolist():
-        owned.setdefault(_whole_of(table, row, row_of), []).append(row)
+    rows_of_whole: dict[int, list[int]] = {}
+    for row in range(len(table)):
+        rows_of_whole.setdefault(_whole_of(table, row, row_of), []).append(row)
+    owned = {
+        id_: seen
+        for id_, rows in rows_of_whole.items()
+        if (seen := [row for row in rows if table.visible_pixels[row]])
+    }
     least = LEAST_SHARE * frame.views["instance"].size
     colours = _colours_of(frame, {id_: table.ids[rows] for id_, rows in owned.items()})
+    masks = None if frame.draw_amodal is None or frame.row_poses is not None else frame.amodal
     found = []
     for id_, rows in sorted(owned.items()):
         row = row_of[id_]
@@ -133,6 +183,8 @@ def seen_objects(frame: Frame) -> tuple[SeenObject, ...]:
                 size_m=table.box_sizes[row],
                 turn=_rotation(table.world_from_object[row]),
                 colours=colours.get(id_, {}),
+                materials=facts.materials.get(id_, {}),
+                hidden=_hidden_share(masks, table, rows_of_whole[id_]),
             )
         )
     return tuple(found)
@@ -163,6 +215,23 @@ def _colours_of(
         id_: {word: float(one / total.sum()) for word, one in zip(COLOUR_WORDS, total, strict=True)}
         for id_, total in sums.items()
     }
+
+
+def _hidden_share(masks: AmodalMasks | None, table: ObjectTable, rows: list[int]) -> float:
+    """Return the share of an object that the picture does not show; NaN if that is not known.
+
+    Nor where a part of it is not seen at all.
+    """
+    if masks is None:
+        return math.nan
+    covered = np.zeros((masks.height, masks.width), bool)
+    for row in rows:
+        mask = masks.mask(int(table.ids[row]))
+        if mask.any() and not table.visible_pixels[row]:
+            return math.nan
+        covered |= mask
+    whole = int(covered.sum())
+    return 1.0 - min(int(table.visible_pixels[rows].sum()) / whole, 1.0) if whole else math.nan
 
 
 def _whole_of(table: ObjectTable, row: int, row_of: Mapping[int, int]) -> int:

@@ -39,9 +39,10 @@ def encode_png(picture: NDArray[Any], effort: PngEffort = "default") -> bytes:
 
     Parameters
     ----------
-    picture : (H, W) or (H, W, 3) uint8, uint16 or bool
-        Labels, or red, green and blue. Truth values become 0 and 255.
+    picture : (H, W), (H, W, 3) or (H, W, 4) uint8, uint16 or bool
+        Labels, or red, green, blue, and alpha. Truth values become 0 and 255.
     effort : {'default', 'quick', 'fastest', 'small'}
+        ``fastest`` knows no alpha.
 
     Raises
     ------
@@ -54,7 +55,7 @@ def encode_png(picture: NDArray[Any], effort: PngEffort = "default") -> bytes:
     if effort == "fastest":
         _check(picture, depths)
         return _fastest(picture)
-    return _encoded(".png", picture, depths, _EFFORTS[effort])
+    return _encoded(".png", picture, depths, _EFFORTS[effort], most=4)
 
 
 def encode_inverse_depth(depth_m: NDArray[np.float32]) -> bytes:
@@ -83,7 +84,7 @@ def encode_inverse_depth(depth_m: NDArray[np.float32]) -> bytes:
     return struct.pack("<iff", 0, scale, offset) + encode_png(levels, "quick")
 
 
-def encode_jpeg(picture: NDArray[np.uint8], quality: int) -> bytes:
+def encode_jpeg(picture: NDArray[np.uint8], quality: int, *, full_colour: bool = False) -> bytes:
     """Return a picture as a JPEG file.
 
     Parameters
@@ -92,13 +93,18 @@ def encode_jpeg(picture: NDArray[np.uint8], quality: int) -> bytes:
         Grey, or red, green and blue.
     quality : int
         From 0 to 100.
+    full_colour : bool
+        True keeps the resolution of colours, which is halved else.
 
     Raises
     ------
     InvalidRequest
         If it is no such array.
     """
-    return _encoded(".jpg", picture, (np.uint8,), (cv2.IMWRITE_JPEG_QUALITY, quality))
+    options = [cv2.IMWRITE_JPEG_QUALITY, quality]
+    if full_colour:
+        options += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444]
+    return _encoded(".jpg", picture, (np.uint8,), options)
 
 
 def decode_picture(data: bytes) -> NDArray[Any]:
@@ -139,8 +145,8 @@ def _chunk(kind: bytes, data: bytes | memoryview) -> tuple[bytes | memoryview, .
     return struct.pack(">I", len(data)), kind, data, struct.pack(">I", checksum)
 
 
-def _check(picture: NDArray[Any], depths: Sequence[type]) -> None:
-    shaped = picture.ndim == 2 or (picture.ndim == 3 and picture.shape[2] == 3)
+def _check(picture: NDArray[Any], depths: Sequence[type], most: int = 3) -> None:
+    shaped = picture.ndim == 2 or (picture.ndim == 3 and 3 <= picture.shape[2] <= most)
     if not shaped or not picture.size or picture.dtype not in depths:
         bits = " or ".join(str(np.dtype(one).itemsize * 8) for one in depths)
         accepted = f"an array (H, W) or (H, W, 3) of truth values or {bits} bits"
@@ -148,9 +154,17 @@ def _check(picture: NDArray[Any], depths: Sequence[type]) -> None:
 
 
 def _encoded(
-    ending: str, picture: NDArray[Any], depths: Sequence[type], options: Sequence[int]
+    ending: str,
+    picture: NDArray[Any],
+    depths: Sequence[type],
+    options: Sequence[int],
+    most: int = 3,
 ) -> bytes:
-    _check(picture, depths)
-    ordered = picture if picture.ndim == 2 else cv2.cvtColor(picture, cv2.COLOR_RGB2BGR)
+    _check(picture, depths, most)
+    ordered = picture
+    if picture.ndim == 3:
+        has_alpha = picture.shape[2] == 4
+        order = cv2.COLOR_RGBA2BGRA if has_alpha else cv2.COLOR_RGB2BGR
+        ordered = cv2.cvtColor(picture, order)
     _, data = cv2.imencode(ending, ordered, options)
     return bytes(data)

@@ -41,7 +41,7 @@ class Glb:
         accessor = self.tree["accessors"][number]
         view = self.tree["bufferViews"][accessor["bufferView"]]
         kind = {5126: "<f4", 5123: "<u2", 5125: "<u4"}[accessor["componentType"]]
-        width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[accessor["type"]]
+        width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}[accessor["type"]]
         first = view["byteOffset"] + accessor["byteOffset"]
         found = np.frombuffer(self.binary, kind, accessor["count"] * width, first)
         return found.reshape(accessor["count"], width)
