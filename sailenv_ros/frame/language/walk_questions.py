@@ -127,7 +127,8 @@ def _rivals_deg(
     rows, columns = np.nonzero(sums <= sums.min() + LONGER_M)
     x = space.origin_m[0] + (columns + 0.5) * space.resolution_m - start[0]
     y = space.origin_m[1] + (rows + 0.5) * space.resolution_m - start[1]
-    return np.degrees(np.arctan2(y, x))
+    directions: NDArray[np.float64] = np.degrees(np.arctan2(y, x))
+    return directions
 
 
 def _turn_deg(angle: NDArray[np.float64]) -> NDArray[np.float64]:
