@@ -319,13 +319,8 @@ def _timed(
 
 
 def _of(snapshot: WorldSnapshot, contents: SceneContents) -> WorldSnapshot:
-    count = len(contents.instances)
-    return replace(
-        snapshot,
-        contents=contents,
-        world_from_body=snapshot.world_from_body[:count].copy(),
-        histories=snapshot.histories[:count].copy(),
-    )
+    fewer = snapshot.of_rows(np.arange(len(contents.instances)))
+    return replace(fewer, contents=contents)
 
 
 def measurements(quick: bool) -> Iterator[Measurement]:

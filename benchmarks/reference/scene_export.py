@@ -77,14 +77,8 @@ def without_outside(snapshot: WorldSnapshot) -> WorldSnapshot:
 
     That takes no part in the light: it is shown as the sky is, of which a tracer knows nothing.
     """
-    kept = [drawn.outside is None for drawn in snapshot.contents.instances]
-    inside = tuple(drawn for drawn in snapshot.contents.instances if drawn.outside is None)
-    return replace(
-        snapshot,
-        contents=replace(snapshot.contents, instances=inside),
-        world_from_body=snapshot.world_from_body[kept],
-        histories=snapshot.histories[kept],
-    )
+    inside = [drawn.outside is None for drawn in snapshot.contents.instances]
+    return snapshot.of_rows(np.array(inside))
 
 
 def sensor(camera: Camera) -> Dict:

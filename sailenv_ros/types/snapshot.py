@@ -8,7 +8,7 @@ pure function of two snapshots and the cameras that go with them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -136,6 +136,9 @@ class WorldSnapshot:
     histories : (N,) int64
         Read-only; a number that changes when an object's past is cut off (it was spawned or
         asked to teleport). Flow exists between two snapshots only for equal numbers.
+    velocities : (N, 2, 3) float64 or None
+        Read-only; of the origin of each body frame [m/s], and angular [rad/s], in world axes. None
+        if nothing moves.
     deformations : mapping of int to Deformation
         Of the instances that deform, by their ids; the same object while a shape is unchanged.
     object_light : mapping of int to ObjectLight
@@ -148,18 +151,42 @@ class WorldSnapshot:
     contents: SceneContents
     world_from_body: NDArray[np.float64]
     histories: NDArray[np.int64]
+    velocities: NDArray[np.float64] | None = None
     deformations: Mapping[int, Deformation] = field(default_factory=dict)
     object_light: Mapping[int, ObjectLight] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         count = len(self.contents.instances)
-        if self.world_from_body.shape != (count, 4, 4) or self.histories.shape != (count,):
-            raise ValueError(
-                f"a snapshot of {count} instances needs poses ({count}, 4, 4) and histories "
-                f"({count},), got {self.world_from_body.shape} and {self.histories.shape}"
-            )
-        self.world_from_body.flags.writeable = False
-        self.histories.flags.writeable = False
+        arrays = {"poses": self.world_from_body, "histories": self.histories}
+        if self.velocities is not None:
+            arrays["velocities"] = self.velocities
+        shapes = {"poses": (count, 4, 4), "histories": (count,), "velocities": (count, 2, 3)}
+        for name, array in arrays.items():
+            if array.shape != shapes[name]:
+                raise ValueError(
+                    f"{name} of {count} instances must have the shape {shapes[name]}, "
+                    f"got {array.shape}"
+                )
+            array.flags.writeable = False
+
+    def of_rows(self, rows: NDArray[np.bool_ | np.integer[Any]]) -> WorldSnapshot:
+        """Return the snapshot of some instances alone: a mask (N,), or places of rows."""
+        places = np.arange(len(self.world_from_body))[rows]
+        instances = tuple(self.contents.instances[place] for place in places)
+        return replace(
+            self,
+            contents=replace(self.contents, instances=instances),
+            world_from_body=self.world_from_body[places],
+            histories=self.histories[places],
+            velocities=None if self.velocities is None else self.velocities[places],
+        )
+
+    @property
+    def moving(self) -> NDArray[np.bool_]:
+        """(N,) bool: what moves at this instant."""
+        if self.velocities is None:
+            return np.zeros(len(self.world_from_body), np.bool_)
+        return np.asarray(self.velocities.any(axis=(1, 2)), np.bool_)
 
 
 class AdaptedExposure(NamedTuple):

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest, NameTaken
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.instance_states import InstanceStates
+from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import BulletClient
@@ -162,12 +163,17 @@ class BodyTable:
         rows = [poses[piece.body_id] for piece in self.pieces]
         return np.stack(rows) if rows else np.zeros((0, 4, 4))
 
-    def states(
-        self, world_from_body: NDArray[np.float64], deformations: Mapping[int, Deformation]
-    ) -> InstanceStates:
-        """Return where all pieces are and how they move, at poses (N, 4, 4) that were just read."""
-        skeletons = skeletons_of(self._bodies)
-        return states_of(self.pieces, world_from_body, self.histories(), deformations, skeletons)
+    def velocities(self, world_from_body: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return (N, 2, 3) velocities of all pieces, linear and angular, at these poses."""
+        found = [
+            piece.body.origin_velocity(matrix)
+            for piece, matrix in zip(self.pieces, world_from_body, strict=True)
+        ]
+        return np.array(found, np.float64).reshape(-1, 2, 3)
+
+    def states(self, snapshot: WorldSnapshot) -> InstanceStates:
+        """Return where all pieces are and how they move, by a snapshot that was just made."""
+        return states_of(self.pieces, snapshot, skeletons_of(self._bodies))
 
     def deformations(self) -> Mapping[int, Deformation]:
         """Return the vertices of the pieces that deform, by their ids."""

@@ -6,14 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import AssetPart
 from sailenv_ros.types.skeleton import Skeleton
+from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 
@@ -93,9 +92,7 @@ def find_piece(pieces: Sequence[LabelledPiece], obj: object) -> LabelledPiece:
 
 def states_of(
     pieces: Sequence[LabelledPiece],
-    world_from_body: NDArray[np.float64],
-    histories: NDArray[np.int64],
-    deformations: Mapping[int, Deformation],
+    snapshot: WorldSnapshot,
     skeletons: Mapping[int, Skeleton],
 ) -> InstanceStates:
     """Return where pieces are and how they move.
@@ -103,29 +100,24 @@ def states_of(
     Parameters
     ----------
     pieces : sequence of LabelledPiece
-    world_from_body : (N, 4, 4) float64
-        A pose for each, that was just read.
-    histories : (N,) int64
-        As of `InstanceStates`.
-    deformations : mapping of int to Deformation
+    snapshot : WorldSnapshot
+        With a row for each, that was just made.
     skeletons : mapping of int to Skeleton
-        The same.
+        As of `InstanceStates`.
     """
-    moving = [
-        piece.body.origin_velocity(matrix)
-        for piece, matrix in zip(pieces, world_from_body, strict=True)
-    ]
-    velocities = np.array(moving, np.float64).reshape(-1, 2, 3)
+    velocities = snapshot.velocities
+    if velocities is None:
+        velocities = np.zeros((len(pieces), 2, 3))
     quats = [piece.body.orientation_of_matrix() for piece in pieces]
     scales = [piece.body.placement.scale for piece in pieces]
     return InstanceStates(
         ids=np.array([piece.id for piece in pieces], np.uint16),
-        positions=world_from_body[:, :3, 3],
+        positions=snapshot.world_from_body[:, :3, 3],
         orientations=np.array(quats, np.float64).reshape(-1, 4),
         linear_velocities=velocities[:, 0],
         angular_velocities=velocities[:, 1],
         scales=np.array(scales, np.float64).reshape(-1, 3),
-        histories=histories,
-        deformations=deformations,
+        histories=snapshot.histories,
+        deformations=snapshot.deformations,
         skeletons=skeletons,
     )

@@ -232,6 +232,7 @@ class WorldState:
                 contents=self._shown.current,
                 world_from_body=poses,
                 histories=self._bodies.histories(),
+                velocities=self._bodies.velocities(poses),
                 deformations=self._bodies.deformations(),
             )
         return self._snapshot
@@ -240,7 +241,7 @@ class WorldState:
         """Return poses and velocities of all instances; the same object until something changes."""
         snapshot = self.snapshot()
         if self._states is None:
-            self._states = self._bodies.states(snapshot.world_from_body, snapshot.deformations)
+            self._states = self._bodies.states(snapshot)
         return self._states
 
     def mover(self, name: str) -> Mover:

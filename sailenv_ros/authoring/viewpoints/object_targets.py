@@ -129,19 +129,14 @@ def target_of_row(
     room: str, snapshot: WorldSnapshot, boxes: NDArray[np.float64], row: int
 ) -> Target:
     """Return the object of a row of a snapshot."""
-    contents = snapshot.contents
     low, high = boxes[row]
+    only = snapshot.of_rows(np.array([row]))
     pose = snapshot.world_from_body[row]
     return Target(
         room=room,
         row=row,
         snapshot=snapshot,
-        alone=replace(
-            snapshot,
-            contents=replace(contents, instances=(contents.instances[row],), lights=(), baked=None),
-            world_from_body=snapshot.world_from_body[row : row + 1].copy(),
-            histories=snapshot.histories[row : row + 1].copy(),
-        ),
+        alone=replace(only, contents=replace(only.contents, lights=(), baked=None)),
         boxes=boxes,
         middle=pose[:3, :3] @ (0.5 * (low + high)) + pose[:3, 3],
         size_m=float(np.linalg.norm(high - low)),

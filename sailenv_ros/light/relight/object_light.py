@@ -63,12 +63,15 @@ class PlacedObject:
     model : Model
     scale : (3,) tuple of float
     world_from_body : (4, 4) float64
+    moves : bool
+        Whether it moves now.
     """
 
     id: int
     model: Model
     scale: tuple[float, float, float]
     world_from_body: NDArray[np.float64]
+    moves: bool = False
 
 
 class SurfacePoints:

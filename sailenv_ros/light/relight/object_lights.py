@@ -11,7 +11,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
@@ -28,9 +27,9 @@ STEP_M, STEP = 1e-3, 1.0 / 512.0
 NEAR_M = 0.25
 """Things whose balls are farther apart neither shade nor light each other [m]."""
 
-MOST_ELSEWHERE = 12
-"""Of the objects that stand elsewhere than in their epoch's first snapshot so many get light of
-their own in each snapshot, those with the lowest ids; others have that of the probes."""
+MOST_MOVING = 12
+"""Of the objects that move so many get light of their own in each snapshot, those with the lowest
+ids; others have that of the probes."""
 
 
 def can_be_lit(drawn: DrawnInstance) -> bool:
@@ -41,11 +40,17 @@ def can_be_lit(drawn: DrawnInstance) -> bool:
 
 def movable_objects(snapshot: WorldSnapshot) -> list[PlacedObject]:
     """Return what can move and keeps its shape."""
+    moving = snapshot.moving.tolist()
+    rows = zip(snapshot.contents.instances, snapshot.world_from_body, moving, strict=True)
     return [
         PlacedObject(
-            id=drawn.instance.id, model=drawn.model, scale=drawn.scale, world_from_body=pose
+            id=drawn.instance.id,
+            model=drawn.model,
+            scale=drawn.scale,
+            world_from_body=pose,
+            moves=moves,
         )
-        for drawn, pose in zip(snapshot.contents.instances, snapshot.world_from_body, strict=True)
+        for drawn, pose, moves in rows
         if can_be_lit(drawn)
     ]
 
@@ -60,10 +65,8 @@ class ObjectLights:
     """The light on what can move in one scene."""
 
     def __init__(self) -> None:
-        self._epoch = -1
-        self._first: dict[int, bytes] = {}
         self._of: tuple[object, ...] = ()
-        self._seen: tuple[object, NDArray[np.float64]] = (None, np.zeros((0, 4, 4)))
+        self._seen: tuple[object, tuple[bytes, bytes]] = (None, (b"", b""))
         self._points = SurfacePoints()
         self._lighting: ObjectLighting | None = None
         self._known: dict[int, tuple[tuple[object, ...], ObjectLight]] = {}
@@ -90,25 +93,23 @@ class ObjectLights:
             The result does not depend on it.
         """
         of = scene, *(change.key for change in changes)
-        instances, poses = snapshot.contents.instances, snapshot.world_from_body
-        if of == self._of and instances is self._seen[0] and np.array_equal(poses, self._seen[1]):
+        seen = snapshot.world_from_body.tobytes(), snapshot.moving.tobytes()
+        instances = snapshot.contents.instances
+        if of == self._of and instances is self._seen[0] and seen == self._seen[1]:
             return self._light
-        self._seen = instances, poses
+        self._seen = instances, seen
         things = [_steady(thing) for thing in movable_objects(snapshot)]
-        if snapshot.contents.epoch != self._epoch:
-            self._epoch = snapshot.contents.epoch
-            self._first = {thing.id: thing.world_from_body.tobytes() for thing in things}
         if self._lighting is None or of != self._of:
             self._lighting = ObjectLighting(scene, changes, self._points)
             self._of, self._known = of, {}
-        chosen = self._chosen(things)
+        chosen = _chosen(things)
         near = _near(things)
         known = {}
         asked = []
         for place in chosen:
             thing = things[place]
             around = [things[other] for other in near[place]]
-            quality = QUICK if self._is_elsewhere(thing) else FINE
+            quality = QUICK if thing.moves else FINE
             key = quality, _place_of(thing), *(_place_of(other) for other in around)
             before = self._known.get(thing.id)
             if before is not None and before[0] == key:
@@ -127,17 +128,15 @@ class ObjectLights:
         self._light = {id_: light for id_, (_, light) in known.items()}
         return self._light
 
-    def _chosen(self, things: list[PlacedObject]) -> list[int]:
-        """Return the places of those that get light of their own."""
-        chosen, elsewhere = [], 0
-        for place, thing in enumerate(things):
-            elsewhere += self._is_elsewhere(thing)
-            if elsewhere <= MOST_ELSEWHERE or not self._is_elsewhere(thing):
-                chosen.append(place)
-        return chosen
 
-    def _is_elsewhere(self, thing: PlacedObject) -> bool:
-        return self._first.get(thing.id) != thing.world_from_body.tobytes()
+def _chosen(things: list[PlacedObject]) -> list[int]:
+    """Return the places of those that get light of their own."""
+    chosen, moving = [], 0
+    for place, thing in enumerate(things):
+        moving += thing.moves
+        if moving <= MOST_MOVING or not thing.moves:
+            chosen.append(place)
+    return chosen
 
 
 def _steady(thing: PlacedObject) -> PlacedObject:

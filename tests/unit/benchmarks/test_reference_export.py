@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from benchmarks.reference import scene_export as export
 from benchmarks.reference import tracing
-from benchmarks.reference.compare import VIEWS, _cameras
+from benchmarks.reference.compare import VIEWS, _camera
 from benchmarks.reference.parts import Parts, ply_bytes
 from benchmarks.reference.surfaces import bsdf, emitter
 from sailenv_ros.assets.primitives import Primitives
@@ -28,6 +28,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable, Instance
 from sailenv_ros.types.lights import Environment, Light, SkyMap
 from sailenv_ros.types.model import Material, Model, ModelPart
+from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
 angles = st.floats(-180.0, 180.0)
@@ -91,21 +92,19 @@ def test_a_point_lies_in_the_same_place_of_both_pictures(
 def test_every_room_has_five_cameras_inside_it() -> None:
     """Each view of the comparison is a camera at eye height between the room's walls."""
     scenes = Path(__file__).resolve().parents[3] / "scenes"
-    for scene, cameras in _cameras(None, None, (32, 24)).items():
+    listed = yaml.safe_load(VIEWS.read_text(encoding="utf-8"))
+    for scene, views in listed.items():
+        cameras = [_camera(view, (32, 24), PictureSettings()) for view in views.values()]
         assert len(cameras) == 5
         size = yaml.safe_load((scenes / f"{scene}.yaml").read_text(encoding="utf-8"))["room"][
             "size"
         ]
-        for camera in cameras.values():
+        for camera in cameras:
             x, y, z = camera.pose.position_m
             assert abs(x) < size[0] / 2
             assert abs(y) < size[1] / 2
             assert 1.4 <= z <= 1.8
-    assert set(yaml.safe_load(VIEWS.read_text(encoding="utf-8"))) == {
-        "room_01",
-        "room_02",
-        "room_03",
-    }
+    assert set(listed) == {"room_01", "room_02", "room_03"}
 
 
 # ---- light

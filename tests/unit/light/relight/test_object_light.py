@@ -110,24 +110,32 @@ def test_light_is_a_function_of_what_stands_where() -> None:
     one, two = ObjectLights(), ObjectLights()
     first = one.update(snapshot, scene, (), threads=1)
     assert one.update(snapshot, scene, (), threads=1) is first
-    one.update(moved(snapshot, 1, 0.3), scene, (), threads=1)
+    away = one.update(moved(snapshot, 1, 0.3), scene, (), threads=1)
     back = one.update(snapshot, scene, (), threads=1)
     other = two.update(snapshot, scene, (), threads=4)
-    for light in (back, other):
-        assert light.keys() == first.keys() == {2, 3}
-        for id_, own in first.items():
+    late = ObjectLights().update(moved(snapshot, 1, 0.3), scene, (), threads=1)
+    for light, same in ((back, first), (other, first), (late, away)):
+        assert light.keys() == same.keys() == {2, 3}
+        for id_, own in same.items():
             assert np.array_equal(own.bounced, light[id_].bounced)
             assert np.array_equal(own.direct, light[id_].direct)
 
 
 def test_many_things_on_their_way_cost_little(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Only so many that stand elsewhere get light of their own; at first all do."""
-    monkeypatch.setattr(module, "MOST_ELSEWHERE", 1)
-    snapshot = room((BOX, IN_THE_AIR), (BOX, Pose((0.6, 0.0, 0.5))), (BOX, Pose((-0.6, 0.0, 0.5))))
+    """Only so many that move get light of their own, and of fewer rays until they rest."""
+    monkeypatch.setattr(module, "MOST_MOVING", 1)
+    things = ((BOX, IN_THE_AIR), (BOX, Pose((0.6, 0.0, 0.5))), (BOX, Pose((-0.6, 0.0, 0.5))))
+    snapshot = room(*things, environment=WHITE_SKY)
     scene, lights = scene_of(snapshot), ObjectLights()
-    assert lights.update(snapshot, scene, (), threads=1).keys() == {2, 3, 4}
-    shown = moved(moved(snapshot, 1, 0.1), 2, 0.5)
-    assert lights.update(shown, scene, (), threads=1).keys() == {2, 4}
+    rest = lights.update(snapshot, scene, (), threads=1)
+    assert rest.keys() == {2, 3, 4}
+    velocities = np.zeros((4, 2, 3))
+    velocities[1:3, 0, 0] = 0.5
+    shown = lights.update(replace(snapshot, velocities=velocities), scene, (), threads=1)
+    assert shown.keys() == {2, 4}
+    assert not np.array_equal(shown[2].bounced, rest[2].bounced)
+    again = lights.update(snapshot, scene, (), threads=1)
+    assert np.array_equal(again[2].bounced, rest[2].bounced)
 
 
 def test_creeping_by_less_than_can_be_seen_changes_nothing() -> None:

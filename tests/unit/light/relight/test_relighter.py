@@ -143,13 +143,7 @@ def test_what_goes_leaves_no_shadow(baked: WorldSnapshot) -> None:
     relighter = Relighter()
     relighter.watch(baked)
     contents = baked.contents
-    left = WorldSnapshot(
-        sim_time_ns=0,
-        step=0,
-        contents=replace(contents, instances=contents.instances[:1]),
-        world_from_body=baked.world_from_body[:1].copy(),
-        histories=baked.histories[:1].copy(),
-    )
+    left = baked.of_rows(np.arange(1))
     got = light_of(relighter.lit(left, wanted=True, lockstep=True))
     lamp = got.layers[1].direct
     assert (lamp > 0).sum() > (light_of(baked).layers[1].direct > 0).sum()
