@@ -67,14 +67,14 @@ ASSETS = [
 ]
 # What only baking light needs; light that was baked before is read without.
 BAKE = ["xatlas>=0.0.9"]
-# What only importing URDF and MJCF scenes needs.
-IMPORT = ["mujoco>=3.3"]
+# What only importing URDF, MJCF and USD scenes needs.
+IMPORT = ["mujoco>=3.3", "usd-core>=25.5"]
 # What the experiments compare with and draw with: `sailenv bench`, `report`, and `sailenv eval`.
 # The SAILenv client, which is timed at the gateway and tested there, declares no dependencies.
 BENCH = ["matplotlib>=3.8", "mujoco>=3.3", "PyOpenGL>=3.1", "sailenv==0.5b0"]
 EVAL = ["matplotlib>=3.8", "onnxruntime>=1.17"]
 # What some formats of data sets and remote places for them need, and the engine of many machines.
-DATASET = ["fsspec>=2024.2", "pyarrow>=15"]
+DATASET = ["fsspec>=2024.2", "h5py>=3.10", "pyarrow>=15"]
 # What environments for agents need; several agents in one room need pettingzoo, too.
 GYM = ["gymnasium>=1.0", "pettingzoo>=1.25"]
 NOTEBOOK = ["ipykernel>=6.29", "jupyterlab>=4.2"]
@@ -102,6 +102,7 @@ DEV = [
     "flask-cors>=5.0",
     "fsspec>=2024.2",
     "gymnasium>=1.0",
+    "h5py>=3.10",
     "moto[s3]>=5",
     "mujoco>=3.3",
     "mypy",
@@ -122,6 +123,7 @@ DEV = [
     "sailenv==0.5b0",
     "types-jsonschema",
     "types-PyYAML",
+    "usd-core>=25.5",
 ]
 CONFIG = ["yaml", "xml", "json", "rviz"]
 

@@ -6,7 +6,6 @@ What it says of physics is left out.
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import tempfile
 from collections.abc import Mapping
@@ -16,7 +15,7 @@ from sailenv_content.scene_import.gltf_scene import import_gltf
 from sailenv_content.scene_import.imported import ImportedScene, Names
 from sailenv_ros.assets.pack import PackEntry
 from sailenv_ros.assets.robots.read_apart import ANSWER, run_reader
-from sailenv_ros.errors import MissingPackage
+from sailenv_ros.extras import need
 
 __all__ = ["import_usd"]
 
@@ -31,8 +30,7 @@ def import_usd(path: Path, names: Names, ours: Mapping[str, PackEntry]) -> Impor
     MissingPackage
         If Pixar's library is not installed.
     """
-    if importlib.util.find_spec("pxr") is None:
-        raise MissingPackage("importing USD", "usd-core", "pip install usd-core")
+    need("pxr", "importing USD")
     with tempfile.TemporaryDirectory(prefix="sailenv-import-") as name:
         folder = Path(name)
         run_reader("sailenv_content.scene_import.usd_reader", "USD", path, folder)

@@ -33,6 +33,7 @@ ERRORS: dict[str, SailenvError] = {
             [errors.SceneDiagnostic(path="a.yaml", line=1, column=2, field="x", message="is wrong")]
         ),
         errors.AssetError("chair", "has no mesh"),
+        errors.AssetMissing("arm.urdf", "there is no such file"),
         errors.PhysicsError("it diverged"),
         errors.RenderError("it cannot be drawn"),
         errors.ContextError(["no device"]),

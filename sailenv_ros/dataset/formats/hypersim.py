@@ -8,6 +8,7 @@ radiance are left out.
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -17,9 +18,9 @@ from numpy.typing import NDArray
 from sailenv_ros.assets.category_names import names_in
 from sailenv_ros.dataset.formats.data_files import write_bytes
 from sailenv_ros.dataset.formats.dataset_format import Sample
-from sailenv_ros.dataset.formats.hdf5_file import hdf5_bytes
 from sailenv_ros.dataset.formats.nyu40 import NYU40
 from sailenv_ros.dataset.formats.scans import QUALITY, ScanExport
+from sailenv_ros.extras import need
 from sailenv_ros.frame.pictures.codecs import encode_jpeg
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.labels import CategoryTable
@@ -62,7 +63,7 @@ class HypersimExport(ScanExport):
         if "normals" in frame.views:
             arrays["normal_world"] = frame["normals"] @ pose[:3, :3].T.astype(np.float32)
         for name, values in arrays.items():
-            write_bytes(images / _GEOMETRY / f"{stem}.{name}.hdf5", hdf5_bytes(values))
+            write_bytes(images / _GEOMETRY / f"{stem}.{name}.hdf5", _hdf5(values))
         self._poses.setdefault(folder, []).append(pose)
 
     def write_scene(self, folder: Path, lens: CameraIntrinsics) -> None:
@@ -74,7 +75,7 @@ class HypersimExport(ScanExport):
             "positions": poses[:, :3, 3],
         }
         for name, values in keyframes.items():
-            write_bytes(detail / "cam_00" / f"camera_keyframe_{name}.hdf5", hdf5_bytes(values))
+            write_bytes(detail / "cam_00" / f"camera_keyframe_{name}.hdf5", _hdf5(values))
         tables = {
             "metadata_cameras": "camera_name\ncam_00\n",
             "metadata_scene": "parameter_name,parameter_value\nmeters_per_asset_unit,1.0\n",
@@ -88,6 +89,14 @@ class HypersimExport(ScanExport):
         line = ["scene", str(lens.width), str(lens.height), *told]
         table = f"{','.join(columns)}\n{','.join(line)}\n"
         write_bytes(detail / "metadata_camera_parameters.csv", table.encode())
+
+
+def _hdf5(values: NDArray[Any]) -> bytes:
+    """Return an HDF5 file that holds an array by the name that Hypersim's have."""
+    file = io.BytesIO()
+    with need("h5py", "the format hypersim").File(file, "w") as opened:
+        opened.create_dataset("dataset", data=values)
+    return file.getvalue()
 
 
 def _rays(lens: CameraIntrinsics) -> NDArray[np.float64]:
