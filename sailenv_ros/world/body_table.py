@@ -163,14 +163,6 @@ class BodyTable:
         rows = [poses[piece.body_id] for piece in self.pieces]
         return np.stack(rows) if rows else np.zeros((0, 4, 4))
 
-    def velocities(self, world_from_body: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return (N, 2, 3) velocities of all pieces, linear and angular, at these poses."""
-        found = [
-            piece.body.origin_velocity(matrix)
-            for piece, matrix in zip(self.pieces, world_from_body, strict=True)
-        ]
-        return np.array(found, np.float64).reshape(-1, 2, 3)
-
     def states(self, snapshot: WorldSnapshot) -> InstanceStates:
         """Return where all pieces are and how they move, by a snapshot that was just made."""
         return states_of(self.pieces, snapshot, skeletons_of(self._bodies))

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.types.instance_states import InstanceStates
@@ -16,7 +17,7 @@ from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.types.validation import is_integer
 from sailenv_ros.world.bodies import Body
 
-__all__ = ["LabelledPiece", "find_piece", "pieces_of", "states_of"]
+__all__ = ["LabelledPiece", "find_piece", "pieces_of", "states_of", "velocities_of"]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -88,6 +89,17 @@ def find_piece(pieces: Sequence[LabelledPiece], obj: object) -> LabelledPiece:
             if piece.id == int(obj):
                 return piece
     raise UnknownName("object", obj, named)
+
+
+def velocities_of(
+    pieces: Sequence[LabelledPiece], world_from_body: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return (N, 2, 3) velocities of pieces, linear and angular, at poses that were just read."""
+    found = [
+        piece.body.origin_velocity(matrix)
+        for piece, matrix in zip(pieces, world_from_body, strict=True)
+    ]
+    return np.array(found, np.float64).reshape(-1, 2, 3)
 
 
 def states_of(

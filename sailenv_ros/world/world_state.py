@@ -24,6 +24,7 @@ from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.engine_settings import configure
 from sailenv_ros.world.first_states import FirstStates
 from sailenv_ros.world.inactive_objects import InactiveObjects
+from sailenv_ros.world.labelled_pieces import velocities_of
 from sailenv_ros.world.look_at_solver import LookAtSolver
 from sailenv_ros.world.motion_log import Motion, MotionLog
 from sailenv_ros.world.mover import Mover
@@ -232,7 +233,7 @@ class WorldState:
                 contents=self._shown.current,
                 world_from_body=poses,
                 histories=self._bodies.histories(),
-                velocities=self._bodies.velocities(poses),
+                velocities=velocities_of(self._bodies.pieces, poses),
                 deformations=self._bodies.deformations(),
             )
         return self._snapshot
