@@ -7,7 +7,6 @@ the package's own. Everything is drawn from one seed, so that a failure comes ag
 from __future__ import annotations
 
 import base64
-import io
 import itertools
 import json
 import random
@@ -316,9 +315,7 @@ def _light_samples() -> tuple[bytes, ...]:
     )
     grid = ProbeGrid(origin_m=(0.0, 0.0, 0.0), spacing_m=(1.0, 1.0, 1.0), shape=(1, 1, 1))
     baked = BakedLight(fingerprint="b" * 32, charts={}, layers=(layer,), probes=grid)
-    data = io.BytesIO()
-    np.savez(data, allow_pickle=False, **light_files._arrays_of(baked))
-    return (data.getvalue(),)
+    return (bytes(light_files._coded_arrays(baked, light_files.LEVEL)),)
 
 
 def _read_light(data: bytes, folder: Path) -> object:

@@ -47,7 +47,8 @@ class GaussiansExport(ColmapExport):
         """Write a frame's inverse depth; 0 is infinitely far."""
         with np.errstate(divide="ignore"):
             inverse = 1.0 / sample.frame["depth"].astype(np.float64)
-        steps = np.rint(np.nan_to_num(inverse, nan=0.0) / MOST_PER_METRE * _STEPS)
+        inverse = np.clip(np.nan_to_num(inverse, nan=0.0), 0.0, MOST_PER_METRE)
+        steps = np.rint(inverse / MOST_PER_METRE * _STEPS)
         name = f"{sample.stem}.png"
         write_png(folder / "depths" / name, steps.clip(0, _STEPS - 1).astype(np.uint16))
 

@@ -111,13 +111,18 @@ def store_draft(baked: BakedLight) -> Path:
     return _stored(baked, path, QUICK_LEVEL)
 
 
-def _stored(baked: BakedLight, path: Path, level: int) -> Path:
+def _coded_arrays(baked: BakedLight, level: int) -> memoryview:
+    """Return what follows the checksum of a file."""
     arrays = io.BytesIO()
     given = _arrays_of(baked)
     with ThreadPoolExecutor(thread_count()) as pool:
         few = dict(zip(given, pool.map(partial(coded, level=level), given.values()), strict=True))
     np.savez(arrays, allow_pickle=False, **few)
-    payload = arrays.getbuffer()
+    return arrays.getbuffer()
+
+
+def _stored(baked: BakedLight, path: Path, level: int) -> Path:
+    payload = _coded_arrays(baked, level)
     with storage_errors("the baked light", path), _lock():
         remove_unfinished(path.parent)
         with written_file(path) as file:

@@ -300,11 +300,11 @@ class _WithoutStates:
         if topic.endswith("frame_info"):
             # A false, three bytes that fill up, three empty arrays, two empty texts with three
             # bytes between them, bytes up to a multiple of eight, a number of eight bytes, and
-            # an empty array.
+            # two empty arrays.
             (data,) = parts
             header, empty_text = 4, 5
             end = len(bytes(data).rstrip(b"\0")) + empty_text - 1
-            assert len(data) == header + -(-(end - header) // 8) * 8 + 8 + 4
+            assert len(data) == header + -(-(end - header) // 8) * 8 + 8 + 4 + 4
             data = data[:end]
             assert data[-29] == 0
             assert not any(data[-25:-13])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
+from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.simulation.operations.entity_operations import EntityOperations as Entities
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.outlines import Solid
@@ -75,11 +75,11 @@ def test_what_cannot_move_is_refused_and_stays(doors: SynchronousSimulation) -> 
         ("door", None, moving),
     ):
         with pytest.raises(InvalidRequest):
-            do(doors, Entities.set_entity, name, pose, velocities)
-    with pytest.raises(UnknownName):
-        do(doors, Entities.set_entity, "nothing", HIGH, None)
+            do(doors, Entities.set_entity, before[name].id, pose, velocities)
+    with pytest.raises(InvalidRequest, match="9999"):
+        do(doors, Entities.set_entity, 9999, HIGH, None)
     assert named(doors) == before
-    do(doors, Entities.set_entity, "cabinet", HIGH, still)
+    do(doors, Entities.set_entity, before["cabinet"].id, HIGH, still)
     assert named(doors)["cabinet"].pose == HIGH
 
 
@@ -158,7 +158,7 @@ def test_a_region_has_what_its_shapes_touch(core: SynchronousSimulation) -> None
         assert ("cube" in names) == found
     point = (corner + 0.295, 0.0, 60.0)
     assert do(core, Entities.clearance_m, point) == pytest.approx(0.295)
-    low, high = do(core, Entities.entity_box, "cube")
+    low, high = do(core, Entities.entity_box, named(core)["cube"].id)
     assert (low, high) == ((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
 
 

@@ -116,7 +116,7 @@ def test_jpeg_has_the_colours_in_their_order() -> None:
 @pytest.mark.parametrize(
     "picture",
     [
-        np.zeros((4, 4), np.float32), np.zeros((4, 4, 4), np.uint8), np.zeros(4, np.uint8),
+        np.zeros((4, 4), np.float32), np.zeros((4, 4, 5), np.uint8), np.zeros(4, np.uint8),
         np.zeros((0, 4), np.uint8),
     ],
 )  # fmt: skip
@@ -126,6 +126,14 @@ def test_what_is_no_picture_is_refused(picture: np.ndarray) -> None:
             encode(picture)
     with pytest.raises(InvalidRequest, match="uint16"):
         encode_jpeg(np.zeros((4, 4), np.uint16), 90)
+    with pytest.raises(InvalidRequest, match="picture must be an array"):
+        encode_jpeg(np.zeros((4, 4, 4), np.uint8), 90)
+
+
+def test_png_keeps_alpha() -> None:
+    picture = np.arange(64, dtype=np.uint8).reshape(4, 4, 4)
+    read = cv2.imdecode(np.frombuffer(encode_png(picture), np.uint8), cv2.IMREAD_UNCHANGED)
+    np.testing.assert_array_equal(read[..., [2, 1, 0, 3]], picture)
 
 
 @pytest.mark.parametrize("data", [b"", b"no picture", encode_png(PICTURES[0])[:20]])
