@@ -31,6 +31,9 @@ _EXTRA_OF = {
 }
 """Extra of the distribution that brings each package; others are installed by their own name."""
 
+_DISTRIBUTION_OF = {"pxr": "usd-core"}
+"""Distributions that are not named as the packages in them."""
+
 
 def need(module: str, purpose: str) -> Any:
     """Import a module of an optional package.
@@ -51,5 +54,6 @@ def need(module: str, purpose: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError as problem:
-        wanted = f"'sailenv_ros[{_EXTRA_OF[package]}]'" if package in _EXTRA_OF else package
-        raise MissingPackage(purpose, package, f"pip install {wanted}") from problem
+        name = _DISTRIBUTION_OF.get(package, package)
+        wanted = f"'sailenv_ros[{_EXTRA_OF[package]}]'" if package in _EXTRA_OF else name
+        raise MissingPackage(purpose, name, f"pip install {wanted}") from problem

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from packaging.requirements import Requirement
 
-from sailenv_ros.extras import _EXTRA_OF
+from sailenv_ros.extras import _DISTRIBUTION_OF, _EXTRA_OF
 from tests.packaging.project import ROOT
 
 OPTIONAL = sorted(package for package, extra in _EXTRA_OF.items() if extra in ("assets", "bake"))
@@ -51,7 +51,7 @@ def test_every_optional_package_is_in_the_extra_that_its_error_names() -> None:
     """The command in the sentence installs what is missing; nothing optional is required."""
     extras = declared()
     for package, extra in _EXTRA_OF.items():
-        assert package in extras[extra], package
+        assert _DISTRIBUTION_OF.get(package, package) in extras[extra], package
     assert not set(OPTIONAL) & extras["requirements"]
     assert len(OPTIONAL) == 3
 
