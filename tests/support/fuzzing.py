@@ -26,6 +26,7 @@ from sailenv_ros.errors import AssetError, SailenvError
 from sailenv_ros.gateway.codec import MessageReader
 from sailenv_ros.gateway.scenario_json import entries_of_scenario, mapping_of_json
 from sailenv_ros.light.bake import light_files
+from sailenv_ros.light.bake.array_coding import LEVEL
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.topics import OfferedQos, RecordedTopic, RecordingOptions
 from sailenv_ros.recording.writer import RecordingWriter
@@ -315,7 +316,7 @@ def _light_samples() -> tuple[bytes, ...]:
     )
     grid = ProbeGrid(origin_m=(0.0, 0.0, 0.0), spacing_m=(1.0, 1.0, 1.0), shape=(1, 1, 1))
     baked = BakedLight(fingerprint="b" * 32, charts={}, layers=(layer,), probes=grid)
-    return (bytes(light_files._coded_arrays(baked, light_files.LEVEL)),)
+    return (bytes(light_files._coded_arrays(baked, LEVEL)),)
 
 
 def _read_light(data: bytes, folder: Path) -> object:
