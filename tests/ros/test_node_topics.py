@@ -363,7 +363,11 @@ def test_agents_of_different_size_and_rate_live_side_by_side(probe: Probe) -> No
     step_until(probe, lambda: len(tall.messages) > 2 and first.messages, "frames of both")
     assert (tall.last.width, tall.last.height) == (40, 64)
     assert (first.last.width, first.last.height) == (160, 120)
-    assert set(np.diff(tall.stamps())) <= {16_666_666, 16_666_667}
+    apart_ns = np.diff(tall.stamps())
+    periods = np.rint(apart_ns * 60 / 1e9)
+    # A busy machine may lose a frame between two.
+    assert periods.min() == 1
+    np.testing.assert_allclose(apart_ns, periods * 1e9 / 60, atol=1.0)
     probe.done(DeleteAgent, "delete_agent", DeleteAgent.Request(name="tall"))
     gone = f"{NAMESPACE}/tall/category"
     until(lambda: not probe.node.get_publishers_info_by_topic(gone), "the topic to go")

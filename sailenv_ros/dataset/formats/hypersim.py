@@ -38,6 +38,7 @@ class HypersimExport(ScanExport):
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "category", "instance")
     title: ClassVar[str] = "Hypersim"
+    packages: ClassVar[tuple[str, ...]] = ("h5py",)
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
