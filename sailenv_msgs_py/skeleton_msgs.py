@@ -39,15 +39,16 @@ def skeletons_from_msgs(messages: Iterable[SkeletonMsg]) -> dict[int, Skeleton]:
     """
     found = {}
     for told in messages:
-        poses, points = (np.array(told.joint_poses), np.array(told.points))
+        poses = np.array(told.joint_poses, np.float64)
+        points = np.array(told.points, np.float64)
         if poses.size % 12 or points.size % 3:
             size = f"{poses.size} and {points.size} numbers"
             raise InvalidRequest("skeleton", size, "12 for each joint, 3 for each point")
         found[int(told.id)] = Skeleton(
             joint_names=tuple(told.joint_names),
             parents=np.array(told.parents, np.int64),
-            world_from_joint=poses.reshape(-1, 3, 4).astype(np.float64),
+            world_from_joint=poses.reshape(-1, 3, 4),
             point_names=tuple(told.point_names),
-            points=points.reshape(-1, 3).astype(np.float64),
+            points=points.reshape(-1, 3),
         )
     return found

@@ -58,5 +58,5 @@ def room_exposure(baked: BakedLight, lights: Iterable[Light], wanted: float | No
         if layer.light is None:
             seen += radiance
         elif light := shining.get(layer.light.name):
-            seen += radiance * (np.asarray(light.colour) * light.intensity)
+            seen += radiance * np.asarray(light.power)
     return round(metered_exposure(seen, wanted), 2)

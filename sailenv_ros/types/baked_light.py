@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sailenv_ros.types.lights import Environment, Light
 
 __all__ = [
+    "LIGHT_TERMS",
     "EDGE_POINTS",
     "BakedLight",
     "LightChart",
@@ -148,6 +149,10 @@ class LightLayer:
     edges: SunEdges | None = None
 
 
+LIGHT_TERMS = 12
+"""Terms of `ObjectLight`."""
+
+
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class ObjectLight:
     """Contribution of each layer to the light on one object that can move, where it stands.
@@ -158,9 +163,9 @@ class ObjectLight:
 
     Attributes
     ----------
-    bounced : (L, 12, 3) float32
+    bounced : (L, LIGHT_TERMS, 3) float32
         By layer, term and colour: what comes from surfaces, the sky and what glows.
-    direct : (L, 12) float32
+    direct : (L, LIGHT_TERMS) float32
         What arrives straight from the layer's light, with soft shadows; 0 for directional lights,
         which light moving things in real time, and the surroundings.
     """

@@ -17,7 +17,7 @@ from sensor_msgs.msg import JointState, LaserScan
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from tests.support.robot_files import CART
+from tests.support.robot_files import CART, CART_BEFORE_A_WALL
 from tests.support.ros_probe import BEST_EFFORT, LATCHED, Probe
 from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
@@ -26,17 +26,7 @@ pytestmark = pytest.mark.ros
 
 ROOT = Path(__file__).parents[2]
 NAMESPACE = "/launched"
-SCENE = """
-version: 1
-objects:
-  - {name: floor, asset: cube, static: true, position: [0, 0, -0.5], scale: [10, 10, 1]}
-  - {name: wall, asset: cube, static: true, position: [3, 0, 1], scale: [0.2, 8, 2]}
-robots:
-  - name: cart
-    file: cart.urdf
-    mount: differential
-    sensors: [{name: scan, type: lidar, rays: 8}]
-"""
+SCENE = CART_BEFORE_A_WALL + "    sensors: [{name: scan, type: lidar, rays: 8}]\n"
 
 
 class Declared:

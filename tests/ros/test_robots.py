@@ -18,26 +18,18 @@ from sailenv_ros import Agent
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.types.geometry import Pose
 from tests.support.probed_scene import probed_scene
-from tests.support.robot_files import ARM, CART
+from tests.support.robot_files import ARM, CART, CART_BEFORE_A_WALL
 from tests.support.ros_probe import LATCHED, Probe
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros
 
 NAMESPACE = "/robots"
-SCENE = """
-version: 1
-objects:
-  - {name: floor, asset: cube, static: true, position: [0, 0, -0.5], scale: [10, 10, 1]}
-  - {name: wall, asset: cube, static: true, position: [3, 0, 1], scale: [0.2, 8, 2]}
-robots:
-  - name: cart
-    file: cart.urdf
-    mount: differential
+SCENE = f"""{CART_BEFORE_A_WALL}\
     position: [0, 1, 0]
     sensors:
-      - {name: scan, type: lidar, position: [0, 0, 0.15], rate: 20, rays: 4}
-      - {name: imu, type: imu, rate: 60}
+      - {{name: scan, type: lidar, position: [0, 0, 0.15], rate: 20, rays: 4}}
+      - {{name: imu, type: imu, rate: 60}}
 """
 
 

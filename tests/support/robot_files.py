@@ -2,7 +2,20 @@
 
 from __future__ import annotations
 
-__all__ = ["ARM", "CART", "STEERED", "link"]
+__all__ = ["ARM", "CART", "CART_BEFORE_A_WALL", "STEERED", "link"]
+
+
+CART_BEFORE_A_WALL = """
+version: 1
+objects:
+  - {name: floor, asset: cube, static: true, position: [0, 0, -0.5], scale: [10, 10, 1]}
+  - {name: wall, asset: cube, static: true, position: [3, 0, 1], scale: [0.2, 8, 2]}
+robots:
+  - name: cart
+    file: cart.urdf
+    mount: differential
+"""
+"""A scene whose last robot may get more keys."""
 
 
 def link(name: str, mass: float = 1.0, size: str = "0.1 0.1 0.4", z: float = 0.2) -> str:

@@ -51,7 +51,7 @@ class HypersimExport(ScanExport):
         picture = encode_jpeg(frame["rgb"], QUALITY)
         write_bytes(images / _PREVIEW / f"{stem}.tonemap.jpg", picture)
         lens, pose = frame.camera.intrinsics, frame.camera.world_from_camera
-        rays = _rays(lens)
+        rays = lens.rays()
         depth = np.where(np.isfinite(frame["depth"]), frame["depth"], np.nan).astype(np.float64)
         classes = _nyu(sample.scene_info("hypersim").categories)
         instance = frame["instance"].astype(np.int32)
@@ -98,14 +98,6 @@ def _hdf5(values: NDArray[Any]) -> bytes:
     with need("h5py", "the format hypersim").File(file, "w") as opened:
         opened.create_dataset("dataset", data=values)
     return file.getvalue()
-
-
-def _rays(lens: CameraIntrinsics) -> NDArray[np.float64]:
-    """Return (H, W, 3): the optical rays of a pin-hole's pixels, whose z is 1."""
-    x = (np.arange(lens.width) - lens.cx) / lens.fx
-    y = (np.arange(lens.height) - lens.cy) / lens.fy
-    across, down = np.meshgrid(x, y)
-    return np.stack([across, down, np.ones_like(across)], axis=-1)
 
 
 def _nyu(categories: CategoryTable) -> NDArray[np.int16]:

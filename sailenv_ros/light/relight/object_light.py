@@ -28,7 +28,7 @@ from sailenv_ros.native.relight_kernels import (
     light_of_probes,
 )
 from sailenv_ros.rays.model_triangles import triangles_of
-from sailenv_ros.types.baked_light import ObjectLight
+from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
 from sailenv_ros.types.model import Model
 
 __all__ = ["ObjectLighting", "PlacedObject", "SurfacePoints"]
@@ -38,9 +38,6 @@ Doubles = NDArray[np.float64]
 
 WHOLE, INSIDE = 2, 3
 """States of points: all of their light is wanted; they lie inside of something."""
-
-TERMS = 12
-"""Of `irradiance_of_terms` in light_law.h."""
 
 STIFFNESS = np.array([0.0] + 3 * [0.01] + 5 * [0.04] + 3 * [0.04])
 """How strongly each term is held back where points do not tell it, as a share of their number."""
@@ -126,7 +123,7 @@ class ObjectLighting:
         )
         bounced, direct, weights = self._gathered(world, positions, normals, quality)
         fit = _fit(positions, normals, weights)
-        by_layer = (fit @ bounced).reshape(TERMS, len(self._lights), 3).transpose(1, 0, 2)
+        by_layer = (fit @ bounced).reshape(LIGHT_TERMS, len(self._lights), 3).transpose(1, 0, 2)
         return ObjectLight(
             bounced=np.ascontiguousarray(by_layer, np.float32),
             direct=np.ascontiguousarray((fit @ direct).T, np.float32),
@@ -219,7 +216,7 @@ def _surface_points(model: Model, count: int) -> tuple[Doubles, Doubles]:
 
 
 def _fit(positions: Floats, normals: Floats, weights: Doubles) -> Doubles:
-    """Return (TERMS, P): from values at points to terms, by weighted least squares."""
+    """Return (LIGHT_TERMS, P): from values at points to terms, by weighted least squares."""
     n, p = normals.astype(np.float64), positions.astype(np.float64)
     middle = (weights[:, None] * p).sum(axis=0) / weights.sum()
     reach = max(float(np.linalg.norm(p - middle, axis=1).max()), 1e-6)

@@ -16,17 +16,14 @@ from sailenv_ros.render.scene.lightmap_compositing import (
     composite_lightmap,
     instance_light,
 )
-from sailenv_ros.types.baked_light import ObjectLight
+from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
-__all__ = ["ROW_IDS", "TERMS", "BakedState"]
+__all__ = ["ROW_IDS", "BakedState"]
 
 ROW_IDS = 256
 """The table of instances has a multiple of this number of rows."""
-
-TERMS = 12
-"""Of each colour of an instance's light; see `ObjectLight`."""
 
 
 class BakedState:
@@ -36,7 +33,7 @@ class BakedState:
     ----------
     composited : CompositedLight or None
         Replaced by another object when lights have changed.
-    instances : (R, 3, TERMS) float32
+    instances : (R, 3, LIGHT_TERMS) float32
         Red, green and blue of the light around each instance id, by terms; see `ObjectLight`.
         Where that is not known, by the probes at the instance's middle. Replaced by another array
         when something has moved.
@@ -49,7 +46,7 @@ class BakedState:
         self._poses: NDArray[np.float64] | None = None
         self._middles = np.zeros((0, 4))
         self.composited: CompositedLight | None = None
-        self.instances: NDArray[np.float32] = np.zeros((ROW_IDS, 3, TERMS), np.float32)
+        self.instances: NDArray[np.float32] = np.zeros((ROW_IDS, 3, LIGHT_TERMS), np.float32)
 
     def update(self, snapshot: WorldSnapshot) -> CompositedLight | None:
         """Bring everything up to date; None where the scene has no baked light."""
@@ -88,14 +85,14 @@ class BakedState:
         light = instance_light(probes, contents.baked.probes, points)
         ids = contents.instance_ids.astype(np.intp)
         rows = int(ids.max(initial=0)) // ROW_IDS + 1
-        table = np.zeros((rows * ROW_IDS, 3, TERMS), np.float32)
+        table = np.zeros((rows * ROW_IDS, 3, LIGHT_TERMS), np.float32)
         table[ids, :, :4] = light.transpose(0, 2, 1)
         return table
 
 
 def _sum_of(light: ObjectLight, composited: CompositedLight) -> NDArray[np.float32]:
-    """Return (3, TERMS): the layers of an object's light as bright as they are now."""
-    total = np.zeros((TERMS, 3), np.float32)
+    """Return (3, LIGHT_TERMS): the layers of an object's light as bright as they are now."""
+    total = np.zeros((LIGHT_TERMS, 3), np.float32)
     total[0] = composited.more
     for number, bounced, direct in composited.powers:
         total += light.bounced[number] * bounced + light.direct[number][:, None] * direct
