@@ -52,7 +52,7 @@ def read_home(root: XmlNode) -> Home:
         If it is none, or a number in it is none.
     """
     if root.tag != "home":
-        raise AssetError(root.file, f"it must begin with <home>, and begins with <{root.tag}>")
+        raise AssetError(root.place, f"it must begin with <home>, and begins with <{root.tag}>")
     rise = _m(root, "wallHeight", 250.0)
     levels = {
         node.text("id"): _Level(
@@ -267,7 +267,7 @@ def _colour(node: XmlNode, name: str) -> Vector3 | None:
         number = int(given, 16)
     except ValueError:
         raise AssetError(
-            node.file, f"{name} of <{node.tag}> must be a colour like 00A0B0C0, got {given[:20]!r}"
+            node.place, f"{name} of <{node.tag}> must be a colour like 00A0B0C0, got {given[:20]!r}"
         ) from None
     rgb = np.array([(number >> shift) & 0xFF for shift in (16, 8, 0)]) / 255.0
     red, green, blue = linear_from_srgb(rgb).tolist()

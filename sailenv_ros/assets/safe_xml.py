@@ -83,7 +83,7 @@ class XmlNode:
             value = math.nan
         if not abs(value) <= most:
             raise AssetError(
-                self.file,
+                self.place,
                 f"{name} of <{self.tag}> must be a number within ±{most:g}, got {given[:40]!r}",
             )
         return value
@@ -105,7 +105,7 @@ class XmlNode:
             values = []
         if len(values) != count or not all(abs(value) <= 1e7 for value in values):
             raise AssetError(
-                self.file,
+                self.place,
                 f"{name} of <{self.tag}> must be {count} finite numbers, got {given[:40]!r}",
             )
         return values
@@ -131,18 +131,22 @@ def read_xml(data: bytes, file: str) -> XmlNode:
     open_: list[XmlNode] = [root]
     count = 0
 
+    def place() -> str:
+        return f"{file}:{parser.CurrentLineNumber}:{parser.CurrentColumnNumber + 1}"
+
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal count
         count += 1
         if count > MOST_NODES or len(open_) > DEEPEST:
-            raise AssetError(file, f"it has more than {MOST_NODES} elements, or {DEEPEST} levels")
+            why = f"it has more than {MOST_NODES} elements, or {DEEPEST} levels"
+            raise AssetError(place(), why)
         line, column = parser.CurrentLineNumber, parser.CurrentColumnNumber + 1
         node = XmlNode(tag, attributes, file, line=line, column=column)
         open_[-1].children.append(node)
         open_.append(node)
 
     def refuse(*_: object) -> None:
-        raise AssetError(file, "it declares a document type or entities, which are not read")
+        raise AssetError(place(), "it declares a document type or entities, which are not read")
 
     parser = xml.parsers.expat.ParserCreate()
     parser.StartElementHandler = start
@@ -152,7 +156,11 @@ def read_xml(data: bytes, file: str) -> XmlNode:
     try:
         parser.Parse(data, True)
     except xml.parsers.expat.ExpatError as problem:
-        raise AssetError(file, f"it is no XML that can be read ({problem})") from None
+        why = xml.parsers.expat.ErrorString(problem.code)
+        raise AssetError(
+            f"{file}:{problem.lineno}:{problem.offset + 1}",
+            f"it is no XML that can be read ({why})",
+        ) from None
     except (LookupError, ValueError, UnicodeError) as problem:
         raise AssetError(file, f"its encoding cannot be read ({problem})") from None
     return root.children[0]

@@ -55,9 +55,12 @@ def assembled(
     order = _ordered(links, joints, above, file)
     kept, frames, rests = _kept(order, by_name, above)
     if len(kept) > MOST_LINKS:
-        raise AssetError(file, f"it has {len(kept)} links, and {MOST_LINKS} are accepted")
+        raise AssetError(
+            by_name[kept[MOST_LINKS]].place or file,
+            f"it has {len(kept)} links, and {MOST_LINKS} are accepted",
+        )
     _check_masses(kept, by_name, rests, file)
-    _check_mimics(kept, rests, file)
+    _check_mimics(kept, rests, {name: joint.place or file for name, joint in above.items()})
     made = tuple(
         RobotLink(
             name=one,
@@ -85,21 +88,23 @@ def _check_names(
     file: str,
 ) -> None:
     if len(by_name) < len(links):
-        twice = next(a.name for a in links if sum(b.name == a.name for b in links) > 1)
-        raise AssetError(file, f"two links have the name {twice[:80]!r}; one is accepted")
-    named = [joint.joint.name for joint in joints]
-    if len(set(named)) < len(named):
-        twice = next(one for one in named if named.count(one) > 1)
-        raise AssetError(file, f"two joints have the name {twice[:80]!r}; one is accepted")
+        first = next(a for a in links if by_name[a.name] is not a)
+        place = by_name[first.name].place or file
+        raise AssetError(place, f"two links have the name {first.name[:80]!r}; one is accepted")
+    named: set[str] = set()
     children: set[str] = set()
     for joint in joints:
+        name, place = joint.joint.name, joint.place or file
+        if name in named:
+            raise AssetError(place, f"two joints have the name {name[:80]!r}; one is accepted")
+        named.add(name)
         for end in (joint.parent, joint.child):
             if end not in by_name:
-                shown = f"joint {joint.joint.name[:80]!r} joins link {end[:80]!r}"
-                raise AssetError(file, f"{shown}, which is not there")
+                shown = f"joint {name[:80]!r} joins link {end[:80]!r}"
+                raise AssetError(place, f"{shown}, which is not there")
         if joint.child in children:
             why = f"link {joint.child[:80]!r} hangs on two joints; robots are trees, without loops"
-            raise AssetError(file, why)
+            raise AssetError(place, why)
         children.add(joint.child)
 
 
@@ -111,11 +116,14 @@ def _ordered(
 ) -> list[str]:
     roots = [link.name for link in links if link.name not in above]
     if not roots:
-        raise AssetError(file, "its joints form a loop; robots are trees, with one first link")
+        raise AssetError(
+            joints[0].place or file, "its joints form a loop; robots are trees, with one first link"
+        )
     if len(roots) > 1:
         shown = ", ".join(repr(one[:40]) for one in roots[:4])
+        place = next(link.place for link in links if link.name == roots[1]) or file
         raise AssetError(
-            file, f"it has {len(roots)} links that hang on nothing ({shown}); one is accepted"
+            place, f"it has {len(roots)} links that hang on nothing ({shown}); one is accepted"
         )
     below: dict[str, list[str]] = {}
     for joint in joints:
@@ -124,8 +132,10 @@ def _ordered(
     for one in order:  # which grows meanwhile
         order += below.get(one, [])
     if len(order) < len(links):
-        looped = next(link.name for link in links if link.name not in set(order))
-        raise AssetError(file, f"joints form a loop at link {looped[:80]!r}; robots are trees")
+        reached = set(order)
+        looped = next(link for link in links if link.name not in reached)
+        why = f"joints form a loop at link {looped.name[:80]!r}; robots are trees"
+        raise AssetError(looped.place or file, why)
     return order
 
 
@@ -199,20 +209,26 @@ def _check_masses(
         if rests[one][1].type != "fixed" and masses[group[one]] <= 0.0:
             name = rests[one][1].name[:80]
             why = f"link {one[:80]!r} moves on joint {name!r} and has no <inertial>"
-            raise AssetError(file, f"{why}; a mass above 0 is needed")
+            place = by_name[one].place or file
+            raise AssetError(place, f"{why}; a mass above 0 is needed")
 
 
 def _check_mimics(
-    kept: Sequence[str], rests: Mapping[str, tuple[str, RobotJoint]], file: str
+    kept: Sequence[str],
+    rests: Mapping[str, tuple[str, RobotJoint]],
+    places: Mapping[str, str],
 ) -> None:
     joints = {rests[one][1].name: rests[one][1] for one in kept}
-    for joint in joints.values():
+    for child in kept:
+        joint = rests[child][1]
         if joint.mimic is None:
             continue
         leader = joints.get(joint.mimic.joint)
         if leader is None or leader.type == "fixed" or leader.mimic is not None or leader is joint:
             shown = f"joint {joint.name[:80]!r} follows {joint.mimic.joint[:80]!r}"
-            raise AssetError(file, f"{shown}, which must be a joint that moves and follows none")
+            raise AssetError(
+                places[child], f"{shown}, which must be a joint that moves and follows none"
+            )
 
 
 def _asset(link: RawLink, name: str, file: str) -> Asset:
@@ -229,7 +245,8 @@ def _asset(link: RawLink, name: str, file: str) -> Asset:
     if min(inertia.moments_kg_m2) < -1e-9:
         shown = ", ".join(f"{value:.3g}" for value in inertia.moments_kg_m2)
         raise AssetError(
-            file, f"the inertia of link {link.name[:80]!r} has moments below 0 ({shown})"
+            link.place or file,
+            f"the inertia of link {link.name[:80]!r} has moments below 0 ({shown})",
         )
     least = 1e-9
     x, y, z = (max(value, least) for value in inertia.moments_kg_m2)

@@ -17,7 +17,7 @@ HIGHEST = 6
 PACKAGE, FILE = "package://", "file://"
 
 
-def mesh_path(named: str, description: Path) -> Path:
+def mesh_path(named: str, description: Path, place: str = "") -> Path:
     """Return the file that a description names.
 
     Parameters
@@ -26,15 +26,17 @@ def mesh_path(named: str, description: Path) -> Path:
         A path from the description's folder, or ``package://NAME/path``.
     description : Path
         The file that names it.
+    place : str
+        Where that does so, for errors; its name without.
 
     Raises
     ------
     AssetError
         If it lies elsewhere, is missing or too large.
     """
-    shown = f"mesh {named[:80]!r}"
+    shown, place = f"mesh {named[:80]!r}", place or description.name
     if "\0" in named:
-        raise AssetError(description.name, f"{shown} has a NUL in its path")
+        raise AssetError(place, f"{shown} has a NUL in its path")
     homes = _homes(named, description.resolve().parent)
     for home, inside in homes:
         path = (home / inside).resolve()
@@ -43,7 +45,7 @@ def mesh_path(named: str, description: Path) -> Path:
                 raise AssetError(path.name, f"it is larger than {MAX_ARCHIVE_BYTES // 2**20} MB")
             return path
     accepted = "a file beside the description or in the package that it names is accepted"
-    raise AssetMissing(description.name, f"{shown} is not there; {accepted}")
+    raise AssetMissing(place, f"{shown} is not there; {accepted}")
 
 
 def package_path(named: str) -> Path:

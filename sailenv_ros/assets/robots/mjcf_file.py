@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from sailenv_ros.assets.meshes import RawMesh
 from sailenv_ros.assets.robots.raw_links import RawGeometry, RawJoint, RawLink
 from sailenv_ros.assets.robots.read_apart import checked_tree, read_apart
-from sailenv_ros.assets.safe_xml import XmlNode
 from sailenv_ros.errors import AssetError
 from sailenv_ros.extras import need
 from sailenv_ros.types.colour import linear_from_srgb
@@ -73,14 +72,19 @@ def read_mjcf(path: Path) -> MjcfContent:
     tree = checked_tree(path)
     read, arrays = read_apart(path)
     bodies: Sequence[Mapping[str, Any]] = read["bodies"]
+    places = {node.text("name"): node.place for node in tree.walk() if node.tag == "body"}
+    for body in bodies:
+        body["place"] = places.get(body["name"], "")
     roots = [number for number, body in enumerate(bodies) if number and body["parent"] == 0]
     if not roots:
         raise AssetError(path.name, "its world holds no body, and a robot is one at least")
     frees = [number for number in roots if _is_free(bodies[number])]
     if frees and len(roots) > 1:
-        place = _place(tree, bodies[frees[0]]["name"])
         why = f"its world holds {len(roots)} bodies, of which this one moves freely"
-        raise AssetError(place, f"{why}; a robot is one with all that it carries")
+        raise AssetError(
+            bodies[frees[0]]["place"] or path.name,
+            f"{why}; a robot is one with all that it carries",
+        )
     followers = {one["joint"]: one for one in read["followers"] if one["joint"]}
     geoms: dict[int, list[Mapping[str, Any]]] = {}
     for geom in read["geoms"]:
@@ -103,12 +107,6 @@ def read_mjcf(path: Path) -> MjcfContent:
 
 def _is_free(body: Mapping[str, Any]) -> bool:
     return any(joint["type"] == _FREE for joint in body["joints"])
-
-
-def _place(tree: XmlNode, body: str) -> str:
-    """Return where a body is described, as file:line:column."""
-    nodes = [node for node in tree.walk() if node.tag == "body" and node.text("name") == body]
-    return nodes[0].place if nodes else tree.file
 
 
 def _plain_joints(joint: Mapping[str, Any], body: str) -> list[Mapping[str, Any]]:
@@ -147,17 +145,19 @@ def _add_joints(
     rest = _pose(body["rest_position"], body["rest_quat_wxyz"])
     if not joints:
         fixed = RobotJoint(name=f"{child} fixed", parent_from_rest=rest)
-        content.joints.append(RawJoint(parent=parent, child=child, joint=fixed))
+        content.joints.append(
+            RawJoint(parent=parent, child=child, joint=fixed, place=body["place"])
+        )
         return
-    for place, joint in enumerate(joints):
-        last = place == len(joints) - 1
-        below = child if last else f"{child} {place + 1}"
+    for number, joint in enumerate(joints, 1):
+        last = number == len(joints)
+        below = child if last else f"{child} {number}"
         if not last:
             content.links.append(
                 RawLink(name=below, mass_kg=LIGHTEST_KG, tensor_kg_m2=np.eye(3) * 1e-6)
             )
-        made = _joint(joint, rest, followers, f"{child} joint {place + 1}")
-        content.joints.append(RawJoint(parent=parent, child=below, joint=made))
+        made = _joint(joint, rest, followers, f"{child} joint {number}")
+        content.joints.append(RawJoint(parent=parent, child=below, joint=made, place=body["place"]))
         if joint["start"]:
             content.start[made.name] = float(joint["start"])
         parent, rest = below, Pose()
@@ -208,6 +208,7 @@ def _link(
         mass_kg=body["mass"],
         centre_m=(x, y, z),
         tensor_kg_m2=axes @ np.diag(body["moments"]) @ axes.T,
+        place=body["place"],
     )
 
 

@@ -68,6 +68,8 @@ class RawLink:
         About the centre of mass, in the link's axes.
     friction, spinning_friction : float or None
         Of its surface; None where the file says nothing.
+    place : str
+        Where the file has it, as ``file:line:column``, for errors; empty if that is not known.
     """
 
     name: str
@@ -78,12 +80,14 @@ class RawLink:
     tensor_kg_m2: NDArray[np.float64] = field(default_factory=lambda: np.zeros((3, 3)))
     friction: float | None = None
     spinning_friction: float | None = None
+    place: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RawJoint:
-    """One joint, with the names of what it joins."""
+    """One joint, with the names of what it joins, and its place as that of a `RawLink`."""
 
     parent: str
     child: str
     joint: RobotJoint
+    place: str = ""

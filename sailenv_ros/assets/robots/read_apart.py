@@ -55,21 +55,21 @@ def checked_tree(path: Path) -> XmlNode:
             first = root
             if root.tag not in ("robot", "mujoco"):
                 raise AssetError(
-                    path.name, f"it must begin with <robot> or <mujoco>, and begins <{root.tag}>"
+                    root.place, f"it must begin with <robot> or <mujoco>, and begins <{root.tag}>"
                 )
         for node in root.walk():
             if node.tag in GROWING:
-                raise AssetError(path.name, f"the element <{node.tag}> is not read")
+                raise AssetError(node.place, f"the element <{node.tag}> is not read")
             for key in FILE_KEYS:
                 named = node.text(key)
                 plain = named.removeprefix("package://").removeprefix("file://")
                 if named and (plain != named or not _beside(home, plain)):
-                    raise AssetError(path.name, f"it names {named[:80]!r}, which is not beside it")
+                    raise AssetError(node.place, f"it names {named[:80]!r}, which is not beside it")
             if node.tag == "include" and node.text("file"):
                 other = (home / node.text("file")).resolve()
                 if other not in seen and other.is_file():
                     if len(seen) >= MOST_FILES:
-                        raise AssetError(path.name, f"it includes more than {MOST_FILES} files")
+                        raise AssetError(node.place, f"it includes more than {MOST_FILES} files")
                     seen.add(other)
                     waiting.append(other)
     assert first is not None

@@ -149,14 +149,16 @@ def _read(path: Path, data: bytes, key: str) -> RobotModel:
         links, joints = content.links, content.joints
     else:
         raise AssetError(
-            path.name, f"it must begin with <robot> or <mujoco>, and begins <{root.tag[:40]}>"
+            root.place, f"it must begin with <robot> or <mujoco>, and begins <{root.tag[:40]}>"
         )
     for link in links:
         if len(link.name) > _LONGEST_LINK or not _LINK.fullmatch(link.name):
             accepted = (
                 f"up to {_LONGEST_LINK} letters, digits, spaces, '_', '-' and '.' are accepted"
             )
-            raise AssetError(path.name, f"a link is called {link.name[:80]!r}; {accepted}")
+            raise AssetError(
+                link.place or path.name, f"a link is called {link.name[:80]!r}; {accepted}"
+            )
     name = root.text("name") or root.text("model") or path.stem
     model = assembled(name[:60], links, joints, file=path.name, key=key)
     return replace(model, description=text, mount=content.mount, start=content.start)

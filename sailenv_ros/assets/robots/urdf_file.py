@@ -59,14 +59,14 @@ def read_urdf(root: XmlNode, path: Path) -> tuple[list[RawLink], list[RawJoint]]
     for node in root.walk():
         if node.tag.startswith("xacro:"):
             why = f"<{node.tag}> is not expanded yet; write the output of xacro"
-            raise AssetError(path.name, why)
+            raise AssetError(node.place, why)
         # What xacro would put there where no variable says otherwise.
         for key, value in node.attributes.items():
             if "$(optenv" in value:
                 node.attributes[key] = _OPTIONAL.sub(lambda found: found[1], value)
     colours = _colours(root)
     links = [_link(node, colours, path) for node in root.all("link")]
-    joints = [_joint(node, path) for node in root.all("joint")]
+    joints = [_joint(node) for node in root.all("joint")]
     return links, joints
 
 
@@ -113,7 +113,7 @@ def _link(node: XmlNode, colours: Mapping[str, Colour], path: Path) -> RawLink:
         if mass < 0.0:
             name = node.text("name")[:80]
             raise AssetError(
-                path.name, f"the mass of link {name!r} must not be below 0, got {mass:g}"
+                node.place, f"the mass of link {name!r} must not be below 0, got {mass:g}"
             )
         if inertia is not None:
             tensor = _tensor(inertia)
@@ -128,6 +128,7 @@ def _link(node: XmlNode, colours: Mapping[str, Colour], path: Path) -> RawLink:
         tensor_kg_m2=tensor,
         friction=_contact(node, "lateral_friction", 10.0),
         spinning_friction=_contact(node, "spinning_friction", 1.0),
+        place=node.place,
     )
 
 
@@ -149,7 +150,7 @@ def _geometry(node: XmlNode, colours: Mapping[str, Colour], path: Path) -> RawGe
     pose, geometry = _pose(node), node.first("geometry")
     shape = None if geometry is None or not geometry.children else geometry.children[0]
     if shape is None:
-        raise AssetError(path.name, f"a <{node.tag}> has no geometry")
+        raise AssetError(node.place, f"a <{node.tag}> has no geometry")
     material = node.first("material")
     colour = None
     if material is not None:
@@ -159,7 +160,7 @@ def _geometry(node: XmlNode, colours: Mapping[str, Colour], path: Path) -> RawGe
         return RawGeometry(
             kind="mesh",
             pose=pose,
-            file=mesh_path(shape.text("filename"), path),
+            file=mesh_path(shape.text("filename"), path, shape.place),
             scale=(scale[0], scale[1], scale[2]),
             colour=colour,
         )
@@ -171,42 +172,42 @@ def _geometry(node: XmlNode, colours: Mapping[str, Colour], path: Path) -> RawGe
         size = (shape.number("radius"),)
     else:
         known = "box, sphere, cylinder, capsule or mesh"
-        raise AssetError(path.name, f"geometry must be a {known}, got <{shape.tag[:40]}>")
+        raise AssetError(shape.place, f"geometry must be a {known}, got <{shape.tag[:40]}>")
     if not size or not all(1e-6 <= value <= 100.0 for value in size):
         raise AssetError(
-            path.name, f"sizes of <{shape.tag}> must be from 1e-6 to 100 m, got {size}"
+            shape.place, f"sizes of <{shape.tag}> must be from 1e-6 to 100 m, got {size}"
         )
     kind = shape.tag
     return RawGeometry(kind=kind, size=size, pose=pose, colour=colour)  # type: ignore[arg-type]  # one of the kinds, as checked
 
 
-def _joint(node: XmlNode, path: Path) -> RawJoint:
+def _joint(node: XmlNode) -> RawJoint:
     name, kind = node.text("name"), node.text("type")
     if kind not in _TYPES:
         accepted = "revolute, continuous, prismatic or fixed"
         raise AssetError(
-            path.name, f"type of joint {name[:80]!r} must be {accepted}, got {kind[:40]!r}"
+            node.place, f"type of joint {name[:80]!r} must be {accepted}, got {kind[:40]!r}"
         )
     ends = []
     for tag in ("parent", "child"):
         end = node.first(tag)
         if end is None or not end.text("link"):
-            raise AssetError(path.name, f"joint {name[:80]!r} has no {tag}")
+            raise AssetError(node.place, f"joint {name[:80]!r} has no {tag}")
         ends.append(end.text("link"))
     limit, dynamics, axis = node.first("limit"), node.first("dynamics"), node.first("axis")
     direction = (axis.numbers("xyz", 3) if axis is not None else None) or [1.0, 0.0, 0.0]
     if kind != "fixed" and not np.linalg.norm(direction) > 1e-9:
-        raise AssetError(path.name, f"the axis of joint {name[:80]!r} must not be all 0")
+        raise AssetError(node.place, f"the axis of joint {name[:80]!r} must not be all 0")
     limits = None
     if kind in ("revolute", "prismatic"):
         if limit is None:
-            raise AssetError(path.name, f"joint {name[:80]!r} is {kind} and has no <limit>")
+            raise AssetError(node.place, f"joint {name[:80]!r} is {kind} and has no <limit>")
         limits = (limit.number("lower", most=1e4), limit.number("upper", most=1e4))
         if limits[0] > limits[1]:
             shown = f"lower={limits[0]:g} upper={limits[1]:g}"
             accepted = "two numbers, the lower one first"
             raise AssetError(
-                path.name, f"limits of joint {name[:80]!r} must be {accepted}, got {shown}"
+                limit.place, f"limits of joint {name[:80]!r} must be {accepted}, got {shown}"
             )
     effort, speed = (
         (0.0 if limit is None else abs(limit.number(key, most=1e12)))
@@ -216,6 +217,7 @@ def _joint(node: XmlNode, path: Path) -> RawJoint:
     return RawJoint(
         parent=ends[0],
         child=ends[1],
+        place=node.place,
         joint=RobotJoint(
             name=name,
             type=_TYPES[kind],
@@ -247,4 +249,4 @@ def _pose(node: XmlNode) -> Pose:
     try:
         return Pose.from_rpy_deg((x, y, z), np.degrees(rpy))
     except ValueError as problem:
-        raise AssetError(node.file, f"a place is too far away: {problem}") from None
+        raise AssetError(origin.place, f"a place is too far away: {problem}") from None

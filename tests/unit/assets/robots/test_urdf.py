@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from pathlib import Path
 
@@ -148,9 +149,38 @@ def test_what_cannot_be_a_robot_is_refused_in_words(case: str, tmp_path: Path) -
     body, why = HOSTILE[case]
     header = '<robot name="r" xmlns:xacro="x">'
     began = time.process_time()
-    with pytest.raises(AssetError, match=why):
+    with pytest.raises(AssetError, match=why) as caught:
         RobotStore().read(written(tmp_path, f"{header}{body}</robot>"))
+    # What is wrong of the file as a whole has no line.
+    whole = case in ("too many links", "nothing to be seen")
+    assert bool(re.search(r":\d+:\d+$", caught.value.asset)) is not whole, caught.value
     assert time.process_time() - began < 20.0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "mended", "at"),
+    [
+        ('lower="2"', 'lower="-1"', '<limit lower="2"'),
+        ('value="x"', 'value="1.0"', '<mass value="x"'),
+        ('link="nobody"', 'link="b"', '<joint name="j"'),
+    ],
+)
+def test_a_refusal_says_where(wrong: str, mended: str, at: str, tmp_path: Path) -> None:
+    """The file, the line and the column where the wrong element begins."""
+    text = f"<robot name='r'>\n{link('a')}\n{link('b')}\n  {MOVES.format(LIMIT)}\n</robot>"
+    text = text.replace("><", ">\n <")
+    assert mended in text
+    path = written(tmp_path, text.replace(mended, wrong, 1))
+    with pytest.raises(AssetError) as caught:
+        RobotStore().read(path)
+    before = path.read_text("utf-8").split(at)[0]
+    line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+    assert caught.value.asset == f"{path.name}:{line}:{column}"
+
+
+def test_of_what_is_no_xml_the_place_is_told(tmp_path: Path) -> None:
+    with pytest.raises(AssetError, match=r"'robot.urdf:2:3': it is no XML.*mismatched tag"):
+        RobotStore().read(written(tmp_path, "<robot name='r'>\n</robat>"))
 
 
 def test_entities_are_refused(tmp_path: Path) -> None:
