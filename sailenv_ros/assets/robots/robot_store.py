@@ -17,8 +17,8 @@ from types import MappingProxyType
 from sailenv_ros.assets.archives import MAX_ARCHIVE_BYTES
 from sailenv_ros.assets.robots.assembling import assembled
 from sailenv_ros.assets.robots.mesh_paths import PACKAGE, package_path
-from sailenv_ros.assets.robots.mjcf_file import MjcfContent, read_mjcf
-from sailenv_ros.assets.robots.urdf_file import described, read_urdf
+from sailenv_ros.assets.robots.mjcf_file import read_mjcf
+from sailenv_ros.assets.robots.urdf_file import described, mount_of, read_urdf
 from sailenv_ros.assets.safe_xml import read_xml
 from sailenv_ros.errors import AssetError, AssetMissing, UnknownName
 from sailenv_ros.types.model import Asset
@@ -140,13 +140,15 @@ class RobotStore:
 
 def _read(path: Path, data: bytes, key: str) -> RobotModel:
     root = read_xml(data, path.name)
-    text, content = "", MjcfContent()
+    start: dict[str, float] = {}
+    text, mount = "", mount_of(root)
     if root.tag == "robot":
         links, joints = read_urdf(root, path)
         text = described(data.decode("utf-8-sig", "replace"), path)
     elif root.tag == "mujoco":
         content = read_mjcf(path)
         links, joints = content.links, content.joints
+        mount, start = content.mount, content.start
     else:
         raise AssetError(
             root.place, f"it must begin with <robot> or <mujoco>, and begins <{root.tag[:40]}>"
@@ -161,4 +163,4 @@ def _read(path: Path, data: bytes, key: str) -> RobotModel:
             )
     name = root.text("name") or root.text("model") or path.stem
     model = assembled(name[:60], links, joints, file=path.name, key=key)
-    return replace(model, description=text, mount=content.mount, start=content.start)
+    return replace(model, description=text, mount=mount, start=start)

@@ -19,9 +19,9 @@ from sailenv_ros.assets.safe_xml import XmlNode
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.robots import Mimic, RobotJoint
+from sailenv_ros.types.robots import Mimic, Mount, RobotJoint
 
-__all__ = ["described", "read_urdf"]
+__all__ = ["described", "mount_of", "read_urdf"]
 
 Colour = tuple[float, float, float, float]
 
@@ -37,6 +37,13 @@ _TYPES: Mapping[str, Literal["hinge", "slide", "fixed"]] = {
     "prismatic": "slide",
     "fixed": "fixed",
 }
+
+_DRIVES: Mapping[Mount, re.Pattern[str]] = {
+    "differential": re.compile(r"diff[-_]?drive|skid[-_]?steer", re.IGNORECASE),
+    "mecanum": re.compile("mecanum", re.IGNORECASE),
+    "ackermann": re.compile("ackermann", re.IGNORECASE),
+}
+"""Gazebo's plugins that drive a robot, by the names of their files, of all its generations."""
 
 _OPTIONAL = re.compile(r"\$\(optenv\s+\w+\s*([^)]*)\)")
 
@@ -68,6 +75,16 @@ def read_urdf(root: XmlNode, path: Path) -> tuple[list[RawLink], list[RawJoint]]
     links = [_link(node, colours, path) for node in root.all("link")]
     joints = [_joint(node) for node in root.all("joint")]
     return links, joints
+
+
+def mount_of(root: XmlNode) -> Mount:
+    """Return how a robot stands: on wheels, if a plugin of Gazebo drives it so; else fixed."""
+    files = [node.text("filename") for node in root.walk() if node.tag == "plugin"]
+    turning = any(node.text("type") == "continuous" for node in root.all("joint"))
+    driven = (
+        mount for mount, words in _DRIVES.items() if any(words.search(file) for file in files)
+    )
+    return next(driven, "fixed") if turning else "fixed"
 
 
 def described(text: str, path: Path) -> str:

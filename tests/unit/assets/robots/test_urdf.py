@@ -13,7 +13,7 @@ from sailenv_ros.assets.robots import RobotStore, robot_path
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import BoxShape
-from tests.support.robot_files import ARM, link
+from tests.support.robot_files import ARM, CART, link
 
 MOVES = '<joint name="j" type="revolute"><parent link="a"/><child link="b"/>{}</joint>'
 BOX = '<box size="1 1 1"/>'
@@ -81,6 +81,25 @@ def test_meshes_have_the_colours_of_their_files(tmp_path: Path) -> None:
     assert [part.material.base_colour for part in model.parts] == [(1, 0, 0, 1), (1, 0, 1, 1)]
     # The axes of the file are those of the link.
     np.testing.assert_allclose(model.bounds(), [[0, 0, 0], [1, 2, 3]])
+
+
+@pytest.mark.parametrize(
+    ("plugin", "mount"),
+    [
+        ("libgazebo_ros_diff_drive.so", "differential"),
+        ("gz-sim-diff-drive-system", "differential"),
+        ("libgazebo_ros_skid_steer_drive.so", "differential"),
+        ("gz-sim-mecanum-drive-system", "mecanum"),
+        ("gz-sim-ackermann-steering-system", "ackermann"),
+        ("gz-sim-imu-system", "fixed"),
+    ],
+)
+def test_a_plugin_of_gazebo_puts_a_robot_on_wheels(plugin: str, mount: str, tmp_path: Path) -> None:
+    drive = f'<gazebo><plugin name="drive" filename="{plugin}"/></gazebo></robot>'
+    read = RobotStore().read
+    assert read(written(tmp_path, CART.replace("</robot>", drive))).mount == mount
+    # An arm has no wheels, whatever is said of it.
+    assert read(written(tmp_path, ARM.replace("</robot>", drive), "arm.urdf")).mount == "fixed"
 
 
 HOSTILE = {
