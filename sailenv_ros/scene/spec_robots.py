@@ -115,7 +115,9 @@ class RobotSpec(Turned):
     file: Annotated[str, Text(r"[^\x00-\x1f]{1,1000}", "the path of a file")] = Field(
         description="a path from the scene file's folder, or PACKAGE:path"
     )
-    mount: Annotated[Mount, Choice(MOUNTS)] | None = optional("default: as the file says, else fixed")
+    mount: Annotated[Mount, Choice(MOUNTS)] | None = optional(
+        "default: as the file says, else fixed"
+    )
     parent: Name | None = optional("a static object that carries it")
     position: Position = Field(
         default=(0.0, 0.0, 0.0), description="of its first link; from its parent [m]"
