@@ -5,6 +5,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 venv=$root/.venv
 messages_prefix=$venv/opt/sailenv_msgs # only beside an installed ROS 2
 
+# Images of Python set it: then each process compiles all that it imports anew, for a second or two.
+unset PYTHONDONTWRITEBYTECODE
+
 say() { printf '%s\n' "$*" >&2; }
 die() {
   printf '\nFAILED: %s\n' "$1" >&2

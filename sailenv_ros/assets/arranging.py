@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene.spec_objects import ObjectSpec
 from sailenv_ros.scene.spec_room import RoomSpec
+from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import (
     Asset,
@@ -205,15 +206,14 @@ def _moved(points: Floats, centre_m: tuple[float, float, float]) -> Floats:
 
 def _heights(shape: CollisionShape, scale: tuple[float, float, float], under: Floats) -> Floats:
     """Return (N,): the greatest heights of a shape over points of the floor; -inf beside it."""
-    points, triangles = _triangles_of(shape)
-    points = points * np.asarray(scale)
+    points = _corners(shape) * np.asarray(scale)
     heights = np.full(len(under), -np.inf)
     low, high = points.min(axis=0), points.max(axis=0)
     near = ((under >= low[:2] - _EDGE_M) & (under <= high[:2] + _EDGE_M)).all(axis=1)
     if isinstance(shape, BoxShape) and shape.orientation_xyzw == _UNTURNED:
         heights[near] = high[2]
     elif near.any():
-        heights[near] = _over_triangles(points, triangles, under[near])
+        heights[near] = _over_triangles(points, _triangles_of(shape), under[near])
     return heights
 
 
@@ -232,10 +232,16 @@ def _over_triangles(points: Floats, triangles: NDArray[np.int32], under: Floats)
 
 
 @lru_cache(maxsize=4096)
-def _triangles_of(shape: CollisionShape) -> tuple[Floats, NDArray[np.int32]]:
-    from scipy.spatial import ConvexHull
-
-    points = _corners(shape)
+def _triangles_of(shape: CollisionShape) -> NDArray[np.int32]:
+    """Return (N, 3): the faces of a shape, as rows of its corners; kept, as scipy loads slowly."""
     if isinstance(shape, TriangleShape):
-        return points, shape.triangles
-    return points, np.asarray(ConvexHull(points).simplices, np.int32)
+        return shape.triangles
+    points = _corners(shape)
+
+    def hull() -> Arrays:
+        from scipy.spatial import ConvexHull
+
+        return {"faces": np.asarray(ConvexHull(points).simplices, np.int32)}
+
+    code = code_digest(libraries=("scipy",))
+    return cached_arrays("hull", [points.tobytes()], hull, code=code)["faces"]

@@ -71,7 +71,7 @@ def read_mjcf(path: Path) -> MjcfContent:
     need("mujoco", "reading MJCF")
     tree = checked_tree(path)
     read, arrays = read_apart(path)
-    bodies: Sequence[Mapping[str, Any]] = read["bodies"]
+    bodies: list[dict[str, Any]] = read["bodies"]
     places = {node.text("name"): node.place for node in tree.walk() if node.tag == "body"}
     for body in bodies:
         body["place"] = places.get(body["name"], "")

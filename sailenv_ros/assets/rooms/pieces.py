@@ -87,7 +87,7 @@ class Faces:
         """Add the parallelogram of a corner and two sides that faces along the unit normal."""
         start, a, b = (np.asarray(v, dtype=np.float64) for v in (corner, side, other))
         facing = np.asarray(normal, dtype=np.float64)
-        if np.dot(np.cross(a, b), facing) < 0.0:
+        if _turns_away(a, b, facing):
             a, b = b, a
         self._corners.append(np.stack([start, start + a, start + a + b, start + b]))
         self._normals.append(facing)
@@ -96,7 +96,7 @@ class Faces:
         """Add a face of three or four corners in any sense of turning."""
         points = np.asarray(corners, dtype=np.float64)
         facing = np.asarray(normal, dtype=np.float64)
-        if np.dot(np.cross(points[1] - points[0], points[2] - points[0]), facing) < 0.0:
+        if _turns_away(points[1] - points[0], points[2] - points[0], facing):
             points = points[::-1]
         # A triangle is a square one of whose triangles is dropped.
         self._corners.append(points if len(points) == 4 else np.vstack([points, points[2:]]))
@@ -171,6 +171,12 @@ def _add_box(faces: Faces, box: Box, chamfer_m: float) -> None:
             faces.polygon(edge, (one * axes[axis] + two * axes[second]) / np.sqrt(2.0))
     for tip in product((-1.0, 1.0), repeat=3) if cut else ():
         faces.polygon([corner(axis, tip) for axis in range(3)], np.asarray(tip) / np.sqrt(3.0))
+
+
+def _turns_away(one: Floats, other: Floats, facing: Floats) -> bool:
+    """Tell whether two sides turn against a normal; plain numbers, as NumPy's cross is slow."""
+    (a, b, c), (d, e, f), (x, y, z) = one.tolist(), other.tolist(), facing.tolist()
+    return bool((b * f - c * e) * x + (c * d - a * f) * y + (a * e - b * d) * z < 0.0)
 
 
 def _signs(by_axis: dict[int, float]) -> tuple[float, ...]:
