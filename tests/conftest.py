@@ -60,12 +60,11 @@ INSTALLED_PREFIX = os.environ.get("SAILENV_INSTALLED_PREFIX", "")
 """Set by scripts/test: where the package under test was installed to; else it is the sources'."""
 
 settings.register_profile("dev", deadline=None)
-# The same examples each time, many of them; a shared machine makes no promise about time.
+# The same examples each time; a shared machine makes no promise about time.
 settings.register_profile(
     "ci",
     deadline=None,
     derandomize=True,
-    max_examples=200,
     print_blob=True,
     suppress_health_check=[HealthCheck.too_slow],
 )

@@ -93,11 +93,11 @@ def positions(world: Any) -> NDArray[np.float64]:
 
 
 @pytest.mark.slow
-def test_nothing_leaves_a_closed_box_in_a_minute() -> None:
-    """60 s of the fiercest motion: no body's middle gets beyond the middle of a 10 cm wall."""
+def test_nothing_leaves_a_closed_box() -> None:
+    """20 s of the fiercest motion: no body's middle gets beyond the middle of a 10 cm wall."""
     world = make_world(*closed_box(), *crowd())
     before, travelled = positions(world)[6:], np.zeros(12)
-    for _ in range(60 * 12):
+    for _ in range(20 * 12):
         world.step(20)
         now = positions(world)[6:]
         assert np.abs(now).max() < HALF_M + THICK_M / 2, world.step_count
@@ -105,7 +105,7 @@ def test_nothing_leaves_a_closed_box_in_a_minute() -> None:
         before = now
     world.close()
     # They were not simply stuck.
-    assert travelled.min() > 3.0
+    assert travelled.min() > 1.0
 
 
 @pytest.mark.parametrize(

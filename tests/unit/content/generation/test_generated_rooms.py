@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import yaml
 
+import sailenv_content.generation.generator
 from sailenv_content.generation.checks import look_backend, unseen
 from sailenv_content.generation.generator import GeneratedScene, Generator
 from sailenv_content.generation.room_agents import StandingWorld
@@ -25,11 +26,11 @@ from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
 from sailenv_ros.world.world import World
 
 ROOMS = [
-    *((kind, seed) for kind in ("bedroom", "bathroom", "kitchen") for seed in range(4)),
-    *((kind, seed) for kind in ("living_room", "office") for seed in range(3)),
-    *(("apartment", seed) for seed in range(2)),
+    *((kind, seed) for kind in ("bedroom", "bathroom", "kitchen") for seed in range(2)),
+    *(("office", seed) for seed in range(2)),
+    *((kind, 0) for kind in ("living_room", "apartment")),
 ]
-"""Twenty."""
+"""Two or one of each kind; `benchmarks/generated_rooms.py` checks any number."""
 
 
 @pytest.fixture(scope="module")
@@ -228,7 +229,10 @@ def test_what_cannot_be_made_is_refused(generator: Generator) -> None:
             generator.generate("kitchen", seed)  # type: ignore[arg-type]
 
 
-def test_rules_that_leave_no_space_are_told(generator: Generator) -> None:
+def test_rules_that_leave_no_space_are_told(
+    generator: Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sailenv_content.generation.generator, "MAX_ATTEMPTS", 4)
     rules = generator.rules
     kind = rules.kind("bedroom")
     tiny = kind.model_copy(
