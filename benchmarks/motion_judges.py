@@ -36,9 +36,6 @@ LENGTH = 24
 
 def judge_rigid(folder: Path) -> None:
     """Compare the flow of a still room with theirs from depth, pose and K."""
-    sys.path.insert(0, str(folder))
-    from tools.flowcalc import calc_rigid_and_nonrigid_flow  # type: ignore[import-not-found]
-
     spec = AgentSpec(
         name="eye", intrinsics=CameraIntrinsics(), following=False, rate_hz=0.0, views=("depth",)
     )
@@ -50,19 +47,68 @@ def judge_rigid(folder: Path) -> None:
             frames.append(simulation.capture(("depth", "instance"), agent="eye"))
     one, other = frames
     moved = motion(one, other)
-    cameras = [(frame.camera.intrinsics.K, frame.camera.camera_from_world[:3]) for frame in frames]
-    depths = [frame["depth"].astype(np.float64) for frame in frames]
-    flow = np.nan_to_num(moved.flow.astype(np.float64))
-    _, rest = calc_rigid_and_nonrigid_flow(
-        tuple(depths), tuple(cameras), flow, (one["depth"].shape[0], one["depth"].shape[1])
-    )
+    rest = _beyond_rigid(folder, one, other, np.eye(4), np.eye(4))
     still = moved.valid & (moved.scene_flow == 0.0).all(axis=-1)
     error = np.linalg.norm(rest[still], axis=-1)
-    length = np.linalg.norm(flow[still], axis=-1)
+    length = np.linalg.norm(moved.flow[still], axis=-1)
     print(
         f"rigid-v-nonrigid-flow: {still.mean():.1%} of 640 x 480 px, motion {length.mean():.1f} px "
         f"on average, difference {error.mean():.1e} px, at most {error.max():.1e} px"
     )
+
+
+def judge_links(folder: Path) -> None:
+    """Compare the flow of each link of a moving arm with theirs: a link is still in its frame."""
+    spec = AgentSpec(
+        name="eye", intrinsics=CameraIntrinsics(), following=False, rate_hz=0.0, views=("depth",)
+    )
+    frames = []
+    with Simulation("optical", mode="lockstep", agent=spec) as simulation:
+        simulation.spawn_robot("pybullet_data:franka_panda/panda.urdf", (0.0, -1.5, 0.0))
+        joints = {f"panda_joint{number}": -0.8 for number in (1, 2, 3, 4)}
+        simulation.drive_joints(joints | {"panda_joint6": 1.0, "panda_finger_joint1": 0.04})
+        for x in (1.6, 1.55):
+            simulation.step(60)
+            simulation.set_pose(look_at((x, -0.6, 0.9), (0.0, -1.5, 0.5)), agent="eye")
+            frames.append(simulation.capture(("depth", "instance"), agent="eye"))
+        links = [i for i in simulation.info.instances if i.category == "robot"]
+    one, other = frames
+    moved = motion(one, other)
+    errors, lengths = [], []
+    for link in links:
+        states = [frame.states for frame in frames if frame.states is not None]
+        poses = [one.matrices[one.row(link.id)] for one in states]
+        rest = _beyond_rigid(folder, one, other, *poses)
+        seen = moved.valid & (one["instance"] == link.id)
+        if seen.any():
+            errors.append(np.linalg.norm(rest[seen], axis=-1).max())
+            lengths.append(np.linalg.norm(moved.flow[seen], axis=-1).mean())
+    print(
+        f"rigid-v-nonrigid-flow: {len(errors)} of {len(links)} links seen, motion of a link "
+        f"{min(lengths):.1f} to {max(lengths):.1f} px, difference at most {max(errors):.1e} px"
+    )
+
+
+def _beyond_rigid(
+    folder: Path,
+    one: Frame,
+    other: Frame,
+    world_from_thing: NDArray[np.float64],
+    world_from_moved: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return (H, W, 2): what their program leaves of the flow [px] of a thing that was moved."""
+    sys.path.insert(0, str(folder))
+    from tools.flowcalc import calc_rigid_and_nonrigid_flow  # type: ignore[import-not-found]
+
+    places = ((one, world_from_thing), (other, world_from_moved))
+    cameras = [
+        (frame.camera.intrinsics.K, (frame.camera.camera_from_world @ place)[:3])
+        for frame, place in places
+    ]
+    depths = [frame["depth"].astype(np.float64) for frame in (one, other)]
+    flow = np.nan_to_num(motion(one, other).flow.astype(np.float64))
+    _, rest = calc_rigid_and_nonrigid_flow(tuple(depths), tuple(cameras), flow, flow.shape[:2])
+    return np.asarray(rest)
 
 
 def sequence(width: int, height: int) -> tuple[list[Frame], SceneGeometry, list[Any]]:
@@ -222,6 +268,7 @@ def main() -> None:
     args = parser.parse_args()
     if args.rigid:
         judge_rigid(args.rigid)
+        judge_links(args.rigid)
     if args.tapnet:
         judge_tapnet(args.tapnet)
     if args.kubric and args.python:
