@@ -6,7 +6,8 @@
 
 Prints ``file:line: sentence`` of each fault. Tables, programs, headings, names and types of
 parameters and links' targets do not count. Of a page's sentences 5 % may have over 25 words, none
-over 40.
+over 40. README and pages have at most 35,000 words together, and none more than 3,000, as `wc -w`
+counts them.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ FOLDERS = (
 )  # fmt: skip
 LEFT_OUT = ("sailenv_content/procedural", "sailenv_content/standard")
 """Folders whose docstrings keep their words, where a change builds all furniture again."""
+
+MOST_WORDS, MOST_OF_PAGE = 35_000, 3_000
 
 LONG, LONGEST = 25, 40
 SHARE = 0.05
@@ -197,6 +200,12 @@ def main() -> int:
         page = path.read_text(encoding="utf-8")
         name = path if args.pages else path.relative_to(ROOT)
         found += [f"{name}:{line}: {fault}" for line, fault in sorted(faults_of(page))]
+        if len(page.split()) > MOST_OF_PAGE:
+            found.append(f"{name}:1: it has {len(page.split())} words; at most {MOST_OF_PAGE}")
+    counted = [path for path in written if path.name != "CONTRIBUTING.md"]
+    words = sum(len(path.read_text(encoding="utf-8").split()) for path in counted)
+    if words > MOST_WORDS:
+        found.append(f"README.md and docs/: they have {words} words; at most {MOST_WORDS}")
     for name, source in () if args.pages else sources():
         for line, text in docstrings(source):
             faults = faults_of_docstring(text, words=not name.startswith(LEFT_OUT))
