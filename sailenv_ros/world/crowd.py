@@ -33,6 +33,9 @@ _ROUNDED_M = 0.05
 _NEAR_M = 0.9
 """How far from a free place one may stand or want to go [m]."""
 
+_APART_M = 0.5
+"""Distance of places that two can use [m]."""
+
 _RADIUS = 0.165
 """Of a body, as a share of its height."""
 
@@ -58,7 +61,7 @@ class Crowd:
         self._maps: dict[BodySize, FreeSpace] = {}
         self._seats: tuple[Seat, ...] | None = None
         self.people: dict[str, Disc] = {}
-        self.taken: dict[str, tuple[float, float]] = {}
+        self.taken: dict[str, tuple[Place, ...]] = {}
 
     def _bodies(self) -> list[Body]:
         """Return the bodies that are no people."""
@@ -68,6 +71,15 @@ class Crowd:
         """Return what others take: people but one, and movers."""
         found = [disc for name, disc in self.people.items() if name != without]
         return [*found, *self._others()]
+
+    def is_free(self, name: str, place: Place) -> bool:
+        """Return whether nobody but that person uses a place."""
+        return all(
+            np.hypot(place[0] - x, place[1] - y) > _APART_M
+            for other, places in self.taken.items()
+            for x, y in places
+            if other != name
+        )
 
     def blocks(self, name: str, radius_m: float, way: Way, number: int) -> bool:
         """Return whether someone stands where a person is after the next steps of its way."""

@@ -53,7 +53,7 @@ class PersonBody(Body):
             )
         self._rig: Rig = placement.asset.rig
         self._scale = float(sx)
-        self.walker = Walker(placement.name, self._rig, self._scale, placement.pose)
+        self.walker = Walker(placement.name, placement.asset, self._scale, placement.pose)
         self.walker.pass_through = self._pass_through
         super().__init__(client, replace(placement, static=False))
         self._limbs = Limbs(client, self._rig) if self._scale == 1.0 else None
@@ -139,7 +139,7 @@ class PersonBody(Body):
 
     def remove(self) -> None:
         """Take the body out of the engine."""
-        self.walker.leave_seat()
+        self.walker.leave()
         if self.walker.crowd is not None:
             self.walker.crowd.people.pop(self.placement.name, None)
         if self._limbs is not None:

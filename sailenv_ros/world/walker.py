@@ -1,13 +1,14 @@
-"""A person's way through the world: where it walks, sits and looks, step by step.
+"""A person's way through the world: where it walks and looks, and what it does on the spot.
 
-Told by behaviours, moved by time. Knows the crowd around, and neither the engine nor skin.
+Told by behaviours, moved by time. Knows the crowd around, and not the engine. What it does where a
+way ends is an activity of `world.activities`.
 """
 
 from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.behaviours.person import Activity
-from sailenv_ros.postures.figure import figure_of
 from sailenv_ros.postures.footsteps import (
     Moment,
     Stride,
@@ -24,14 +24,14 @@ from sailenv_ros.postures.footsteps import (
     way_along,
     way_to_turn,
 )
-from sailenv_ros.postures.sitting import SIT_S, SeatPlace, seat_distance_m, sitting_posture
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.rig import Rig
+from sailenv_ros.types.model import Asset
+from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity
+from sailenv_ros.world.activities.sitting import seats_for, ways_to_sit
 from sailenv_ros.world.crowd import Crowd, body_size
-from sailenv_ros.world.seats import Seat
 
 __all__ = ["Walker"]
 
@@ -45,8 +45,6 @@ _LEAST_WAY_M = 0.12
 _STAND_OFF_M = 0.42
 """Distance from which one looks at a thing [m]."""
 
-_FEET_BEFORE_M = 0.02
-
 
 class Walker:
     """One person on its way; a `behaviours.person.Person`.
@@ -55,7 +53,8 @@ class Walker:
     ----------
     name : str
         Of the person.
-    rig : Rig
+    asset : Asset
+        With a rig.
     scale : float
     pose : Pose
         Where it stands at first.
@@ -74,19 +73,20 @@ class Walker:
 
     _way: Way | None
 
-    def __init__(self, name: str, rig: Rig, scale: float, pose: Pose) -> None:
-        self._name, self._rig, self._scale = name, rig, scale
-        self._figure = figure_of(rig)
+    def __init__(self, name: str, asset: Asset, scale: float, pose: Pose) -> None:
+        self._name, self._scale = name, scale
+        self._actor = Actor(name=name, asset=asset, scale=scale, floor_m=0.0)
+        self._figure = self._actor.figure
         self.crowd: Crowd | None = None
         self.problem = ""
         self.pass_through: Callable[[str, bool], None] = lambda name, passes: None
         self._time_s = 0.0
-        self._seat: Seat | None = None
+        self._does: SpotActivity | None = None
         self.stand_at(pose)
 
     def stand_at(self, pose: Pose) -> None:
         """Stand at a pose from now on."""
-        self.leave_seat()
+        self.leave()
         self._stand_at(pose)
         self.matrix = self.matrix_before = self._matrix_of_moment()
 
@@ -96,8 +96,8 @@ class Walker:
         self.matrix_before = self.matrix
         if self._way is not None:
             self._walk_on()
-        elif self._seat is not None:
-            self._sit_on()
+        elif self._does is not None and not self._does.advance():
+            self.leave()
         if self.crowd is not None:
             x, y = self._place
             self.crowd.people[self._name] = (x, y, self._radius_m)
@@ -105,18 +105,21 @@ class Walker:
     @property
     def posture(self) -> Posture:
         """Where its root and joints are now, in the body frame before the scale."""
-        moment = self._moment().scaled(1.0 / self._scale)
         look = 0.0, 0.0
         if self._looks_at and self.crowd is not None:
             eyes_m = self._figure.height_m * self._scale
             look = self.crowd.look_deg(self._looks_at, self.matrix, eyes_m)
-        seed = zlib.crc32(self._name.encode()) % 97
-        if self._seat is not None and self._way is None:
-            share = min(self._sit_s / SIT_S, 1.0)
-            return sitting_posture(
-                self._rig, moment, self._seat_place, share, self._time_s, seed=seed, look_deg=look
-            )
-        return walking_posture(self._rig, moment, self._time_s, seed=seed, look_deg=look)
+        now = Instant(
+            moment=self._moment().scaled(1.0 / self._scale),
+            time_s=self._time_s,
+            seed=zlib.crc32(self._name.encode()) % 97,
+            look_deg=look,
+        )
+        if self._does is not None and self._way is None:
+            return self._does.posture(now)
+        return walking_posture(
+            self._actor.rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg
+        )
 
     # -- what behaviours tell it (see behaviours.person.Person) --------------------------------
 
@@ -125,11 +128,7 @@ class Walker:
         """Activity now."""
         if self._way is not None:
             return "walking"
-        if self._seat is None:
-            return "standing"
-        if self._rises:
-            return "getting up"
-        return "seated" if self._sit_s >= SIT_S else "sitting down"
+        return "standing" if self._does is None else self._does.word
 
     def random_place(self, rng: np.random.Generator) -> Place | None:
         """Return a free place that it can reach [m]; None if there is none."""
@@ -150,36 +149,18 @@ class Walker:
 
     def sit_on(self, name: str) -> bool:
         """Begin to walk to a seat and sit down; False if it cannot."""
-        if self.crowd is None or self._seat is not None or self._way is not None:
-            return False
-        for seat in self._free_seats():
-            if seat.name != name:
-                continue
-            floor = float(self.matrix[2, 3])
-            height = seat.height_m - floor
-            back = seat_distance_m(self._rig, height / self._scale) * self._scale
-            if height > 0.95 * self._figure.leg_m * self._scale:
-                continue
-            ahead = max(back - min(seat.depth_m, 0.62 * back + 0.08), _FEET_BEFORE_M)
-            c, s = float(np.cos(seat.yaw)), float(np.sin(seat.yaw))
-            feet = (seat.x + ahead * c, seat.y + ahead * s)
-            if not self._go(feet, seat.yaw):
-                continue
-            self._seat, self._sit_s, self._rises = seat, 0.0, False
-            self._seat_place = SeatPlace(back_m=back / self._scale, height_m=height / self._scale)
-            self.crowd.taken[self._name] = (seat.x, seat.y)
-            self._pass_through_seat(passes=True)
-            return True
-        return False
+        return self.crowd is not None and self._go_and(ways_to_sit(self._actor, self.crowd, name))
 
     def get_up(self) -> None:
         """Begin to get up, if it sits."""
-        if self._seat is not None and self._way is None:
-            self._rises = True
+        if self._does is not None and self._way is None:
+            self._does.end()
 
     def seats(self) -> tuple[str, ...]:
         """Return the names of seats that nobody has taken."""
-        return tuple(dict.fromkeys(seat.name for seat in self._free_seats()))
+        if self.crowd is None:
+            return ()
+        return tuple(dict.fromkeys(seat.name for seat in seats_for(self._actor, self.crowd)))
 
     def things(self) -> tuple[str, ...]:
         """Return the names of furniture that one may look at."""
@@ -197,7 +178,7 @@ class Walker:
 
     @property
     def _size(self) -> BodySize:
-        return body_size(self._figure.height_m * 1.12 * self._scale, self._floor_m)
+        return body_size(self._figure.height_m * 1.12 * self._scale, self._actor.floor_m)
 
     @property
     def _place(self) -> Place:
@@ -205,7 +186,7 @@ class Walker:
 
     def _stand_at(self, pose: Pose) -> None:
         matrix = pose.matrix()
-        self._floor_m = float(matrix[2, 3])
+        self._actor = replace(self._actor, floor_m=float(matrix[2, 3]))
         yaw = float(np.arctan2(matrix[1, 0], matrix[0, 0]))
         width = self._figure.stride.width_m * self._scale
         self._feet = standing_feet(float(matrix[0, 3]), float(matrix[1, 3]), yaw, width)
@@ -213,10 +194,6 @@ class Walker:
         self._way_s = 0.0
         self._waited_s = 0.0
         self._goal: tuple[Place, float | None] | None = None
-        self._seat = None
-        self._seat_place = SeatPlace(back_m=0.0, height_m=0.0)
-        self._sit_s = 0.0
-        self._rises = False
         self._looks_at = ""
 
     def _moment(self) -> Moment:
@@ -230,7 +207,7 @@ class Walker:
         return np.array([
             [c, -s, 0.0, moment.x],
             [s, c, 0.0, moment.y],
-            [0.0, 0.0, 1.0, self._floor_m],
+            [0.0, 0.0, 1.0, self._actor.floor_m],
             [0.0, 0.0, 0.0, 1.0],
         ])  # fmt: skip
 
@@ -243,7 +220,7 @@ class Walker:
         )
 
     def _go(self, place: Place, yaw: float | None) -> bool:
-        if self.crowd is None or self._seat is not None:
+        if self.crowd is None or self._does is not None:
             return False
         corners = self.crowd.way(self._size, self._place, place)
         self._goal = (place, yaw)
@@ -306,45 +283,34 @@ class Walker:
         self._way, self._waited_s = None, 0.0
         discs = self.crowd.discs(self._name)
         corners, goal = None, self._goal
-        seat = self._seat
         if goal is not None:
             corners = self.crowd.way(self._size, self._place, goal[0], discs)
         if corners is not None and goal is not None and self._follow(corners, goal[1]):
             return
         self.problem = "someone stands in the way"
-        if seat is not None:
-            self.leave_seat()
+        self.leave()
         # Put the feet side by side where it stands.
         yaw = self._moment().yaw
         way = way_to_turn(self._feet, yaw, self._stride())
         self._way, self._way_s, self._goal = way, 0.0, None
 
-    def _sit_on(self) -> None:
-        if not self._rises:
-            self._sit_s = min(self._sit_s + STEP_S, SIT_S)
-            return
-        self._sit_s -= STEP_S
-        if self._sit_s <= 0.0:
-            self.leave_seat()
+    def _go_and(self, ways: Iterable[SpotActivity]) -> bool:
+        """Begin to go where something is done, by the first way to do it that can be reached."""
+        if self.crowd is None or self._does is not None or self._way is not None:
+            return False
+        for activity in ways:
+            if self._go(activity.feet, activity.yaw):
+                self._does = activity
+                self.crowd.taken[self._name] = activity.takes
+                if activity.piece:
+                    self.pass_through(activity.piece, True)
+                return True
+        return False
 
-    def leave_seat(self) -> None:
-        """Sit on nothing any more."""
-        if self._seat is not None:
-            self._pass_through_seat(passes=False)
-        self._seat, self._sit_s, self._rises = None, 0.0, False
+    def leave(self) -> None:
+        """Do nothing on the spot any more."""
+        if self._does is not None and self._does.piece:
+            self.pass_through(self._does.piece, False)
+        self._does = None
         if self.crowd is not None:
             self.crowd.taken.pop(self._name, None)
-
-    def _pass_through_seat(self, *, passes: bool) -> None:
-        if self._seat is not None:
-            self.pass_through(self._seat.name, passes)
-
-    def _free_seats(self) -> list[Seat]:
-        if self.crowd is None:
-            return []
-        taken = [place for name, place in self.crowd.taken.items() if name != self._name]
-        return [
-            seat
-            for seat in self.crowd.seats()
-            if all(np.hypot(seat.x - x, seat.y - y) > 0.5 for x, y in taken)
-        ]

@@ -1,0 +1,1 @@
+"""What people do where their way ends: one activity a file."""

@@ -1,0 +1,112 @@
+"""An activity on the spot: where the feet stand for it, how it goes on, and the posture in it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.behaviours.person import Activity
+from sailenv_ros.postures.figure import Figure, figure_of
+from sailenv_ros.postures.footsteps import Moment
+from sailenv_ros.postures.skeleton import Posture
+from sailenv_ros.types.model import Asset
+from sailenv_ros.types.rig import Rig
+
+__all__ = ["Actor", "Instant", "Place", "SpotActivity"]
+
+Doubles = NDArray[np.float64]
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Actor:
+    """Who does something.
+
+    Attributes
+    ----------
+    name : str
+    asset : Asset
+        With a rig.
+    scale : float
+    floor_m : float
+        Height of the floor that it stands on [m].
+    """
+
+    name: str
+    asset: Asset
+    scale: float
+    floor_m: float
+
+    @property
+    def rig(self) -> Rig:
+        """The skeleton."""
+        assert self.asset.rig is not None
+        return self.asset.rig
+
+    @property
+    def figure(self) -> Figure:
+        """Its measures, before the scale."""
+        return figure_of(self.rig)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Instant:
+    """What a posture depends on, whatever one does.
+
+    Attributes
+    ----------
+    moment : Moment
+        Of the feet, before the scale [m].
+    time_s : float
+        Simulated time [s].
+    seed : int
+        Sets people's breaths apart.
+    look_deg : (2,) tuple of float
+        Where one looks: to the left and down [deg].
+    """
+
+    moment: Moment
+    time_s: float
+    seed: int
+    look_deg: tuple[float, float]
+
+
+class SpotActivity(ABC):
+    """Something that a person does where it stands.
+
+    Attributes
+    ----------
+    feet : (2,) tuple of float
+        Where the person stands for it [m].
+    yaw : float or None
+        Which way it looks there [rad]; None for any.
+    piece : str
+        Name of the object that limbs pass through meanwhile; empty for none.
+    takes : tuple of (2,) tuples of float
+        Places that nobody else is to use meanwhile [m].
+    """
+
+    feet: Place
+    yaw: float | None = None
+    piece: str = ""
+    takes: tuple[Place, ...] = ()
+
+    @property
+    @abstractmethod
+    def word(self) -> Activity:
+        """Word for it now."""
+
+    @abstractmethod
+    def advance(self) -> bool:
+        """Go on by a step; return False once it is over and the person stands."""
+
+    @abstractmethod
+    def end(self) -> None:
+        """Begin to end it."""
+
+    @abstractmethod
+    def posture(self, now: Instant) -> Posture:
+        """Return the posture, in the frame of the body where its feet stand."""

@@ -1,0 +1,82 @@
+"""Sitting: which seats one can take, and sitting down, staying, getting up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from sailenv_ros.behaviours import STEP_S
+from sailenv_ros.behaviours.person import Activity
+from sailenv_ros.postures.sitting import SIT_S, SeatPlace, seat_distance_m, sitting_posture
+from sailenv_ros.postures.skeleton import Posture
+from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity
+from sailenv_ros.world.crowd import Crowd
+from sailenv_ros.world.seats import Seat
+
+__all__ = ["Sitting", "seats_for", "ways_to_sit"]
+
+_FEET_BEFORE_M = 0.02
+_HIGHEST = 0.95
+"""Height of a seat that one can reach, over the leg's length."""
+
+
+class Sitting(SpotActivity):
+    """A person on a seat.
+
+    Parameters
+    ----------
+    actor : Actor
+    seat : Seat
+    """
+
+    def __init__(self, actor: Actor, seat: Seat) -> None:
+        self._rig = actor.rig
+        height = seat.height_m - actor.floor_m
+        back = seat_distance_m(actor.rig, height / actor.scale) * actor.scale
+        ahead = max(back - min(seat.depth_m, 0.62 * back + 0.08), _FEET_BEFORE_M)
+        c, s = float(np.cos(seat.yaw)), float(np.sin(seat.yaw))
+        self.feet = (seat.x + ahead * c, seat.y + ahead * s)
+        self.yaw = seat.yaw
+        self.piece = seat.name
+        self.takes = ((seat.x, seat.y),)
+        self._seat = SeatPlace(back_m=back / actor.scale, height_m=height / actor.scale)
+        self._done_s = 0.0
+        self._rises = False
+
+    @property
+    def word(self) -> Activity:
+        """Word for it now."""
+        if self._rises:
+            return "getting up"
+        return "seated" if self._done_s >= SIT_S else "sitting down"
+
+    def advance(self) -> bool:
+        """Go on by a step; return False once the person stands again."""
+        self._done_s = min(self._done_s + (-STEP_S if self._rises else STEP_S), SIT_S)
+        return self._done_s > 0.0
+
+    def end(self) -> None:
+        """Begin to get up."""
+        self._rises = True
+
+    def posture(self, now: Instant) -> Posture:
+        """Return the posture, in the frame of the body before the seat."""
+        return sitting_posture(
+            *(self._rig, now.moment, self._seat, min(self._done_s / SIT_S, 1.0), now.time_s),
+            seed=now.seed,
+            look_deg=now.look_deg,
+        )
+
+
+def seats_for(actor: Actor, crowd: Crowd) -> list[Seat]:
+    """Return the seats that nobody else has taken."""
+    return [seat for seat in crowd.seats() if crowd.is_free(actor.name, (seat.x, seat.y))]
+
+
+def ways_to_sit(actor: Actor, crowd: Crowd, name: str) -> Iterator[Sitting]:
+    """Yield the ways to sit on a piece."""
+    highest = _HIGHEST * actor.figure.leg_m * actor.scale
+    for seat in seats_for(actor, crowd):
+        if seat.name == name and seat.height_m - actor.floor_m <= highest:
+            yield Sitting(actor, seat)
