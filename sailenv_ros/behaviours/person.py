@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Protocol, TypeAlias
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from pydantic import Field
@@ -10,9 +11,20 @@ from pydantic import Field
 from sailenv_ros.behaviours.base import Action, BehaviourParameters, BodyState
 from sailenv_ros.scene.field_types import Number
 
-__all__ = ["Activity", "Person", "PersonParameters", "free_person", "pause_between", "waits"]
+__all__ = [
+    "Activity",
+    "Person",
+    "PersonParameters",
+    "Rest",
+    "free_person",
+    "pause_between",
+    "rest_somewhere",
+    "waits",
+]
 
-Activity: TypeAlias = Literal["standing", "walking", "sitting down", "seated", "getting up"]
+Activity: TypeAlias = Literal[
+    "standing", "walking", "sitting down", "seated", "lying down", "lying", "getting up"
+]
 
 Seconds = Annotated[float, Number(least=0.0, most=1e5, unit="s")]
 
@@ -39,11 +51,17 @@ class Person(Protocol):
     def sit_on(self, name: str) -> bool:
         """Begin to walk to a seat and sit down; False if it cannot."""
 
+    def lie_on(self, name: str) -> bool:
+        """Begin to walk to a bed and lie down; False if it cannot."""
+
     def get_up(self) -> None:
-        """Begin to get up, if it sits."""
+        """Begin to get up, if it sits or lies."""
 
     def seats(self) -> tuple[str, ...]:
         """Return the names of seats that nobody has taken."""
+
+    def beds(self) -> tuple[str, ...]:
+        """Return the names of what it can lie on and nobody has taken."""
 
     def things(self) -> tuple[str, ...]:
         """Return the names of furniture that one may look at."""
@@ -95,3 +113,57 @@ def pause_between(
     low, high = parameters.pause
     memory["until_s"] = time_s + float(rng.uniform(low, max(low, high)))
     return Action()
+
+
+class Rest(NamedTuple):
+    """A way to rest.
+
+    Attributes
+    ----------
+    word : str
+        Activity of one who rests.
+    span_s : (2,) tuple of float
+        Shortest and longest time of it [s].
+    wanted : tuple of str
+        Names of pieces; none for all that are free.
+    free : callable
+        Returns the names of pieces that are free.
+    begin : callable
+        ``begin(name)`` goes there; False if it cannot.
+    """
+
+    word: Activity
+    span_s: tuple[float, float]
+    wanted: tuple[str, ...]
+    free: Callable[[], tuple[str, ...]]
+    begin: Callable[[str], bool]
+
+
+def rest_somewhere(
+    parameters: PersonParameters,
+    rest: Rest,
+    time_s: float,
+    person: Person,
+    memory: dict[str, Any],
+    rng: np.random.Generator,
+) -> None:
+    """Go where one can rest, rest for a while, get up, and pause."""
+    if person.activity == rest.word:
+        low, high = rest.span_s
+        until = memory.setdefault("up_s", time_s + float(rng.uniform(low, max(low, high))))
+        if time_s >= until:
+            person.get_up()
+        return
+    if person.activity != "standing":
+        return
+    if memory.pop("up_s", None) is not None:
+        pause_between(parameters, memory, time_s, rng)
+        return
+    if waits(memory, time_s):
+        return
+    free = rest.free()
+    wanted = [name for name in rest.wanted or free if name in free]
+    for place in rng.permutation(len(wanted)).tolist():
+        if rest.begin(wanted[place]):
+            return
+    memory["until_s"] = time_s + ASK_AGAIN_S

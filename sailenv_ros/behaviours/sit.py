@@ -8,13 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from sailenv_ros.behaviours.base import Action, BodyState, behaviour
-from sailenv_ros.behaviours.person import (
-    ASK_AGAIN_S,
-    PersonParameters,
-    Seconds,
-    pause_between,
-    waits,
-)
+from sailenv_ros.behaviours.person import PersonParameters, Rest, Seconds, rest_somewhere
 
 __all__ = ["Sit", "sit"]
 
@@ -40,24 +34,7 @@ def sit(
 ) -> Action:
     """Walk to a seat, sit for a while, get up, and go to the next."""
     person = body.person
-    if person is None or time_s < 0.0:
-        return Action()
-    if person.activity == "seated":
-        low, high = parameters.sitting
-        until = memory.setdefault("up_s", time_s + float(rng.uniform(low, max(low, high))))
-        if time_s >= until:
-            person.get_up()
-        return Action()
-    if person.activity != "standing":
-        return Action()
-    if memory.pop("up_s", None) is not None:
-        return pause_between(parameters, memory, time_s, rng)
-    if waits(memory, time_s):
-        return Action()
-    free = person.seats()
-    wanted = [name for name in parameters.seats or free if name in free]
-    for place in rng.permutation(len(wanted)).tolist():
-        if person.sit_on(wanted[place]):
-            return Action()
-    memory["until_s"] = time_s + ASK_AGAIN_S
+    if person is not None and time_s >= 0.0:
+        rest = Rest("seated", parameters.sitting, parameters.seats, person.seats, person.sit_on)
+        rest_somewhere(parameters, rest, time_s, person, memory, rng)
     return Action()

@@ -13,7 +13,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["FootPrint", "Moment", "Stride", "Way", "standing_feet", "way_along", "way_to_turn"]
+__all__ = [
+    "FootPrint",
+    "Moment",
+    "Stride",
+    "Way",
+    "moment_of",
+    "standing_feet",
+    "way_along",
+    "way_to_turn",
+]
 
 Doubles = NDArray[np.float64]
 
@@ -143,10 +152,7 @@ class Way:
             number = 0
         if number >= len(self.prints):
             feet = self.feet_after(len(self.prints))
-            x, y, yaw = _middle(feet)
-            return Moment(
-                feet=feet, goal=None, swinging=-1, share=0.0, x=x, y=y, yaw=yaw, ahead_m=0.0
-            )
+            return moment_of(feet)
         share = min(max(time_s / self.step_s - number, 0.0), 1.0)
         feet = self.feet_after(number)
         side, goal = self.prints[number]
@@ -180,6 +186,12 @@ class Way:
     def then(self, other: Way) -> Way:
         """Return this way and another one that begins where it ends."""
         return replace(self, prints=self.prints + other.prints)
+
+
+def moment_of(feet: tuple[FootPrint, FootPrint]) -> Moment:
+    """Return a body whose feet stand."""
+    x, y, yaw = _middle(feet)
+    return Moment(feet=feet, goal=None, swinging=-1, share=0.0, x=x, y=y, yaw=yaw, ahead_m=0.0)
 
 
 def way_to_turn(feet: tuple[FootPrint, FootPrint], yaw: float, stride: Stride) -> Way:

@@ -34,6 +34,7 @@ _RANDOM = {
 
 _BEHAVIOURS = {
     "linear_waypoints": "linear_waypoints, catmull_waypoints",
+    "lie": "lie",
     "open_and_close": "open_and_close",
     "poltergeist": "poltergeist",
     "rotate_rigidbody": "rotate_rigidbody",

@@ -18,6 +18,7 @@ from sailenv_ros.space.free_space import FREE, OCCUPIED, BodySize, FreeSpace
 from sailenv_ros.space.grid import map_free_space
 from sailenv_ros.space.outlines import Solid, solids_of
 from sailenv_ros.types.labels import ROOM_PARTS
+from sailenv_ros.world.beds import Lane, lanes_of
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.seats import Seat, seats_of
 
@@ -60,6 +61,7 @@ class Crowd:
         self._key: bytes = b""
         self._maps: dict[BodySize, FreeSpace] = {}
         self._seats: tuple[Seat, ...] | None = None
+        self._lanes: tuple[Lane, ...] | None = None
         self.people: dict[str, Disc] = {}
         self.taken: dict[str, tuple[Place, ...]] = {}
 
@@ -110,6 +112,13 @@ class Crowd:
         if self._seats is None:
             self._seats = tuple(seat for body in self._bodies() for seat in seats_of(body))
         return self._seats
+
+    def lanes(self) -> tuple[Lane, ...]:
+        """Return all places to lie."""
+        self._follow()
+        if self._lanes is None:
+            self._lanes = tuple(lane for body in self._bodies() for lane in lanes_of(body))
+        return self._lanes
 
     def body(self, name: str) -> Body | None:
         """Return the body of that name, if there is one."""
@@ -216,7 +225,7 @@ class Crowd:
             places.append(np.round(matrix[:3] / [*([0.2] * 3), _ROUNDED_M]).astype(np.int64))
         key = np.array(places).tobytes()
         if key != self._key:
-            self._key, self._maps, self._seats = key, {}, None
+            self._key, self._maps, self._seats, self._lanes = key, {}, None, None
 
 
 def body_size(height_m: float, floor_m: float) -> BodySize:

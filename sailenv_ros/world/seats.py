@@ -16,7 +16,7 @@ from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.model import Model
 from sailenv_ros.world.bodies import Body
 
-__all__ = ["SEAT_CATEGORIES", "Seat", "seats_of"]
+__all__ = ["SEAT_CATEGORIES", "Seat", "heights_at", "heights_over", "seats_of"]
 
 Doubles = NDArray[np.float64]
 
@@ -78,7 +78,9 @@ def seats_of(body: Body) -> tuple[Seat, ...]:
     found = []
     for y in middles:
         across = np.array([y - 0.11, y, y + 0.11])
-        tops = np.median(_tops(placement.asset.model, placement.scale, along, across), axis=1)
+        tops = np.median(
+            heights_over(placement.asset.model, placement.scale, along, across), axis=1
+        )
         seat = _seat_at(body, matrix, along, tops, y)
         if seat is not None:
             found.append(seat)
@@ -109,12 +111,18 @@ def _seat_at(body: Body, matrix: Doubles, along: Doubles, tops: Doubles, y: floa
     )
 
 
-def _tops(
+def heights_over(
     model: Model, scale: tuple[float, float, float], along: Doubles, across: Doubles
 ) -> Doubles:
     """Return (X, Y): heights of the highest surface over places of a model; -1 for none [m]."""
     x, y = np.meshgrid(along, across, indexing="ij")
-    origins = np.stack([x, y, np.full_like(x, _ABOVE_M)], axis=-1).reshape(-1, 3)
+    found = heights_at(model, scale, np.stack([x, y], axis=-1).reshape(-1, 2))
+    return found.reshape(x.shape)
+
+
+def heights_at(model: Model, scale: tuple[float, float, float], places: Doubles) -> Doubles:
+    """Return (N,): the same over (N, 2) places."""
+    origins = np.column_stack([places, np.full(len(places), _ABOVE_M)])
     states = InstanceStates(
         ids=np.array([1], np.uint16),
         positions=np.zeros((1, 3)),
@@ -125,6 +133,4 @@ def _tops(
     )
     down = np.broadcast_to(np.array([0.0, 0.0, -1.0]), origins.shape)
     hits = SceneGeometry({1: model}).cast(states, origins, down)
-    tops = np.where(np.isfinite(hits.distance), _ABOVE_M - hits.distance, -1.0)
-    found: Doubles = tops.reshape(x.shape)
-    return found
+    return np.where(np.isfinite(hits.distance), _ABOVE_M - hits.distance, -1.0)

@@ -2,22 +2,61 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.native.deformation_kernels import skin
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.postures.skeleton import skin_matrices
+from sailenv_ros.postures.skeleton import Posture, joint_frames, skin_matrices
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Asset, Model
 from sailenv_ros.types.rig import Rig
 from sailenv_ros.types.skeleton import Skeleton
 
-__all__ = ["skin_over", "skin_over_skeleton"]
+__all__ = ["ContactSkin", "contact_skin", "skin_over", "skin_over_skeleton"]
 
 Doubles = NDArray[np.float64]
+
+
+_HAIR = "hair"
+"""Materials of hair begin so: it gives way where a body lies on it."""
+
+
+class ContactSkin(NamedTuple):
+    """The skin and the clothes with which a body touches things.
+
+    Attributes
+    ----------
+    joints : (V,) int64
+        The joint that moves each vertex most.
+    places : callable
+        ``places(posture)``: (V, 3) where they are, body frame before the scale [m].
+    """
+
+    joints: NDArray[np.int64]
+    places: Callable[[Posture], Doubles]
+
+
+def contact_skin(asset: Asset) -> ContactSkin:
+    """Return what of a person touches things."""
+    rig, parts = asset.rig, asset.model.parts
+    assert rig is not None
+    chosen = [n for n, part in enumerate(parts) if not part.material.name.startswith(_HAIR)]
+    joints = np.concatenate([
+        rig.bones[n][np.arange(len(rig.bones[n])), rig.weights[n].argmax(axis=1)] for n in chosen
+    ]).astype(np.int64)  # fmt: skip
+
+    def places(posture: Posture) -> Doubles:
+        matrices = skin_matrices(rig, *joint_frames(rig, posture))
+        meshes = skin_over(asset.model, rig, matrices).meshes
+        return np.concatenate([meshes[n].positions for n in chosen]).astype(np.float64)
+
+    return ContactSkin(joints, places)
 
 
 def skin_over(model: Model, rig: Rig, matrices: Doubles) -> Deformation:

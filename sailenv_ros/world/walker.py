@@ -20,6 +20,7 @@ from sailenv_ros.postures.footsteps import (
     Moment,
     Stride,
     Way,
+    moment_of,
     standing_feet,
     way_along,
     way_to_turn,
@@ -30,6 +31,7 @@ from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity
+from sailenv_ros.world.activities.lying import lanes_for, ways_to_lie
 from sailenv_ros.world.activities.sitting import seats_for, ways_to_sit
 from sailenv_ros.world.crowd import Crowd, body_size
 
@@ -96,7 +98,7 @@ class Walker:
         self.matrix_before = self.matrix
         if self._way is not None:
             self._walk_on()
-        elif self._does is not None and not self._does.advance():
+        elif self._does is not None and not self._does.advance(self.matrix):
             self.leave()
         if self.crowd is not None:
             x, y = self._place
@@ -151,8 +153,12 @@ class Walker:
         """Begin to walk to a seat and sit down; False if it cannot."""
         return self.crowd is not None and self._go_and(ways_to_sit(self._actor, self.crowd, name))
 
+    def lie_on(self, name: str) -> bool:
+        """Begin to walk to a bed and lie down; False if it cannot."""
+        return self.crowd is not None and self._go_and(ways_to_lie(self._actor, self.crowd, name))
+
     def get_up(self) -> None:
-        """Begin to get up, if it sits."""
+        """Begin to get up, if it sits or lies."""
         if self._does is not None and self._way is None:
             self._does.end()
 
@@ -161,6 +167,13 @@ class Walker:
         if self.crowd is None:
             return ()
         return tuple(dict.fromkeys(seat.name for seat in seats_for(self._actor, self.crowd)))
+
+    def beds(self) -> tuple[str, ...]:
+        """Return the names of what it can lie on and nobody has taken."""
+        if self.crowd is None:
+            return ()
+        lanes = lanes_for(self._actor, self.crowd)
+        return tuple(dict.fromkeys(lane.name for lane, _ in lanes))
 
     def things(self) -> tuple[str, ...]:
         """Return the names of furniture that one may look at."""
@@ -199,7 +212,7 @@ class Walker:
     def _moment(self) -> Moment:
         if self._way is not None:
             return self._way.at(self._way_s)
-        return Way(start=self._feet, prints=(), step_s=1.0).at(0.0)
+        return moment_of(self._feet)
 
     def _matrix_of_moment(self) -> Doubles:
         moment = self._moment()
@@ -251,7 +264,7 @@ class Walker:
 
     def _turned(self, way: Way, heading: float) -> Way:
         feet = way.feet_after(len(way.prints))
-        now = Way(start=feet, prints=(), step_s=1.0).at(0.0).yaw
+        now = moment_of(feet).yaw
         if abs((heading - now + np.pi) % (2.0 * np.pi) - np.pi) < 0.35 and way.prints == ():
             return way
         if abs((heading - now + np.pi) % (2.0 * np.pi) - np.pi) < 0.02:

@@ -100,8 +100,8 @@ class SpotActivity(ABC):
         """Word for it now."""
 
     @abstractmethod
-    def advance(self) -> bool:
-        """Go on by a step; return False once it is over and the person stands."""
+    def advance(self, world_from_body: Doubles) -> bool:
+        """Go on by a step where the body stands; return False once it is over."""
 
     @abstractmethod
     def end(self) -> None:

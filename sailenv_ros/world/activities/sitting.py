@@ -5,19 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.behaviours.person import Activity
+from sailenv_ros.postures.figure import figure_of
+from sailenv_ros.postures.footsteps import moment_of, standing_feet
 from sailenv_ros.postures.sitting import SIT_S, SeatPlace, seat_distance_m, sitting_posture
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.seats import Seat
 
-__all__ = ["Sitting", "seats_for", "ways_to_sit"]
+__all__ = ["HIGHEST", "Sitting", "seats_for", "ways_to_sit"]
+
+Doubles = NDArray[np.float64]
 
 _FEET_BEFORE_M = 0.02
-_HIGHEST = 0.95
+HIGHEST = 0.95
 """Height of a seat that one can reach, over the leg's length."""
 
 
@@ -51,7 +56,7 @@ class Sitting(SpotActivity):
             return "getting up"
         return "seated" if self._done_s >= SIT_S else "sitting down"
 
-    def advance(self) -> bool:
+    def advance(self, world_from_body: Doubles) -> bool:
         """Go on by a step; return False once the person stands again."""
         self._done_s = min(self._done_s + (-STEP_S if self._rises else STEP_S), SIT_S)
         return self._done_s > 0.0
@@ -59,6 +64,11 @@ class Sitting(SpotActivity):
     def end(self) -> None:
         """Begin to get up."""
         self._rises = True
+
+    def seated_posture(self) -> Posture:
+        """Return the posture of one who sits, with the feet side by side."""
+        feet = standing_feet(0.0, 0.0, 0.0, figure_of(self._rig).stride.width_m)
+        return sitting_posture(self._rig, moment_of(feet), self._seat, 1.0, 0.0)
 
     def posture(self, now: Instant) -> Posture:
         """Return the posture, in the frame of the body before the seat."""
@@ -76,7 +86,7 @@ def seats_for(actor: Actor, crowd: Crowd) -> list[Seat]:
 
 def ways_to_sit(actor: Actor, crowd: Crowd, name: str) -> Iterator[Sitting]:
     """Yield the ways to sit on a piece."""
-    highest = _HIGHEST * actor.figure.leg_m * actor.scale
+    highest = HIGHEST * actor.figure.leg_m * actor.scale
     for seat in seats_for(actor, crowd):
         if seat.name == name and seat.height_m - actor.floor_m <= highest:
             yield Sitting(actor, seat)

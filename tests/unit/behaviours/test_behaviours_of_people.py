@@ -31,12 +31,18 @@ class NotedPerson:
     def sit_on(self, name: str) -> bool:
         return self._walks("sit", name)
 
+    def lie_on(self, name: str) -> bool:
+        return self._walks("lie", name)
+
     def get_up(self) -> None:
         self.told.append(("up", None))
         self.activity = "standing"
 
     def seats(self) -> tuple[str, ...]:
         return self._seats
+
+    def beds(self) -> tuple[str, ...]:
+        return ("bed",)
 
     def things(self) -> tuple[str, ...]:
         return "table", "lamp"
@@ -46,7 +52,8 @@ class NotedPerson:
 
     def arrive(self) -> None:
         if self.activity == "walking":
-            self.activity = "seated" if self.told[-1][0] == "sit" else "standing"
+            rests = {"sit": "seated", "lie": "lying"}
+            self.activity = rests.get(self.told[-1][0], "standing")
 
     def _walks(self, what: str, where: Any) -> bool:
         self.told.append((what, where))
@@ -97,6 +104,15 @@ def test_one_sits_on_named_seats_alone() -> None:
     assert nobody.told == []
 
 
+def test_one_lies_for_a_while_and_gets_up() -> None:
+    person = NotedPerson()
+    live(running("lie", lying=(2.0, 2.5), pause=(0.2, 0.3)), person, 20.0)
+    assert person.told[:4] == [("lie", "bed"), ("up", None), ("lie", "bed"), ("up", None)]
+    other = NotedPerson()
+    live(running("lie", beds=["sofa"]), other, 5.0)
+    assert other.told == []
+
+
 def test_one_visits_things_in_turn_and_looks_at_them() -> None:
     person = NotedPerson()
     live(running("visit", objects=["lamp", "nothing", "table"], pause=(0.1, 0.2)), person, 12.0)
@@ -109,7 +125,7 @@ def test_one_visits_things_in_turn_and_looks_at_them() -> None:
     assert ("look", "lamp") in person.told
 
 
-@pytest.mark.parametrize("kind", ["walk_around", "sit", "visit"])
+@pytest.mark.parametrize("kind", ["walk_around", "sit", "lie", "visit"])
 def test_the_same_seed_tells_the_same(kind: str) -> None:
     first, second = NotedPerson(), NotedPerson()
     live(running(kind), first, 10.0)
@@ -118,7 +134,7 @@ def test_the_same_seed_tells_the_same(kind: str) -> None:
     assert first.told
 
 
-@pytest.mark.parametrize("kind", ["walk_around", "sit", "visit"])
+@pytest.mark.parametrize("kind", ["walk_around", "sit", "lie", "visit"])
 def test_nothing_is_done_where_there_is_no_person(kind: str) -> None:
     state = BodyState(
         pose=Pose(), linear_velocity=np.zeros(3), angular_velocity=np.zeros(3), mass_kg=1.0

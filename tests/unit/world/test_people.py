@@ -2,111 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.assets.categories import load_categories
-from sailenv_ros.behaviours import RunningBehaviour, start_behaviour
+from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.model import Asset, BoxShape, Model, ModelPart
-from sailenv_ros.world.mover import Mover
-from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.placement import Placement
-from sailenv_ros.world.world import World
-from tests.support.stick_person import stick_person
-from tests.support.tiny_scenes import box_mesh, model_of
+from tests.support.peopled_worlds import (
+    CATEGORIES,
+    STICK,
+    box,
+    chair,
+    one,
+    person,
+    placed,
+    world_of,
+)
 
-CATEGORIES = load_categories()
-STICK = stick_person()
 FEET = tuple(STICK.rig.joint_of[f"foot.{side}"] for side in "LR") if STICK.rig else ()
 TOES = tuple(STICK.rig.joint_of[f"toe1-1.{side}"] for side in "LR") if STICK.rig else ()
-
-
-def box(name: str, size: tuple[float, float, float], category: str = "cube") -> Asset:
-    half = 0.5 * size[0], 0.5 * size[1], 0.5 * size[2]
-    mesh = box_mesh(size)
-    lifted = type(mesh)(
-        positions=mesh.positions + np.array([0.0, 0.0, half[2]], np.float32),
-        normals=mesh.normals,
-        uvs=mesh.uvs,
-        triangles=mesh.triangles,
-    )
-    return Asset(
-        name=name,
-        display_name=name,
-        category=category,
-        model=model_of(lifted),
-        collision=(BoxShape(half_extents_m=half, centre_m=(0.0, 0.0, half[2])),),
-    )
-
-
-def chair() -> Asset:
-    """A block 0.45 m high with a back; one sits towards +x."""
-    seat, back = box("seat", (0.5, 0.5, 0.45)), box("back", (0.08, 0.5, 0.9))
-    moved = back.model.parts[0].mesh
-    behind = type(moved)(
-        positions=moved.positions + np.array([-0.25, 0.0, 0.0], np.float32),
-        normals=moved.normals,
-        uvs=moved.uvs,
-        triangles=moved.triangles,
-    )
-    look = seat.model.parts[0].material
-    return Asset(
-        name="chair",
-        display_name="chair",
-        category="chair",
-        model=Model(
-            name="chair",
-            parts=(seat.model.parts[0], ModelPart(mesh=behind, material=look)),
-        ),
-        collision=(
-            *seat.collision,
-            BoxShape(half_extents_m=(0.04, 0.25, 0.45), centre_m=(-0.25, 0.0, 0.45)),
-        ),
-    )
-
-
-def placed(name: str, asset: Asset, x: float, y: float, yaw: float = 0.0, **more: Any) -> Placement:
-    return Placement(
-        name=name,
-        asset=asset,
-        category_id=CATEGORIES.named(asset.category).id,
-        pose=Pose.from_rpy_deg((x, y, 0.0), (0.0, 0.0, yaw)),
-        **more,
-    )
-
-
-def person(name: str, x: float, y: float, kind: str = "", **parameters: Any) -> Placement:
-    behaviours: tuple[RunningBehaviour, ...] = ()
-    if kind:
-        behaviours = (start_behaviour(kind, parameters, seed=3, object_name=name, place=0),)
-    return placed(name, STICK, x, y, behaviours=behaviours)
-
-
-def world_of(*placements: Placement) -> World:
-    ground = Placement(
-        name="ground",
-        asset=AssetLibrary().get("plane"),
-        category_id=CATEGORIES.named("plane").id,
-        pose=Pose((0.0, 0.0, 0.0)),
-        static=True,
-    )
-    return World(
-        scene="people",
-        placements=[ground, *placements],
-        movers=[Mover(name="mover", start=Pose(), track=None, controller="rigidbody")],
-        categories=CATEGORIES,
-    )
-
-
-def one(world: World, name: str) -> PersonBody:
-    found = next(body for body in world.bodies if body.placement.name == name)
-    assert isinstance(found, PersonBody)
-    return found
 
 
 def test_feet_do_not_slide_and_do_not_sink() -> None:

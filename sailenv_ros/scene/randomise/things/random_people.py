@@ -1,4 +1,4 @@
-"""People who live in a scene: they stand on the free floor when it begins, and walk or sit."""
+"""People who live in a scene: they stand on the free floor when it begins."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["ACTIVITIES", "PEOPLE", "RandomPeople"]
 PEOPLE: tuple[str, ...] = tuple(f"person_{number:02d}" for number in range(1, 29))
 """Names of the people that there are."""
 
-ACTIVITIES = {"walk": "walk_around", "sit": "sit", "visit": "visit", "stand": ""}
+ACTIVITIES = {"walk": "walk_around", "sit": "sit", "lie": "lie", "visit": "visit", "stand": ""}
 """Behaviours by the words for what people do."""
 
 IN_PARTS = "_in_parts"
@@ -36,7 +36,7 @@ _ANY_TURN = Drawn(_Degrees).check({"uniform": [-180.0, 180.0]})
 
 
 class RandomPeople(EpochRandomisation):
-    """People who walk, sit, visit things or stand."""
+    """People who walk, sit, lie, visit things or stand."""
 
     KEY: ClassVar[str] = "added"
 
