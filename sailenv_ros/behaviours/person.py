@@ -13,6 +13,7 @@ from sailenv_ros.scene.field_types import Number
 
 __all__ = [
     "Activity",
+    "ClipPlay",
     "Person",
     "PersonParameters",
     "Rest",
@@ -23,13 +24,44 @@ __all__ = [
 ]
 
 Activity: TypeAlias = Literal[
-    "standing", "walking", "sitting down", "seated", "lying down", "lying", "getting up"
+    "standing",
+    "walking",
+    "sitting down",
+    "seated",
+    "lying down",
+    "lying",
+    "getting up",
+    "playing",
 ]
 
 Seconds = Annotated[float, Number(least=0.0, most=1e5, unit="s")]
 
 ASK_AGAIN_S = 0.5
 """Time after which one who found no way asks again [s]."""
+
+
+class ClipPlay(NamedTuple):
+    """What is played of a clip of recorded motion.
+
+    Attributes
+    ----------
+    clip : str
+        Its name.
+    times : int
+        How often, without a pause.
+    speed : float
+        1 as it was recorded.
+    place : (2,) tuple of float or None
+        Where it begins [m]; None for here.
+    facing_deg : float or None
+        About the vertical, at the beginning [deg]; None for any.
+    """
+
+    clip: str
+    times: int = 1
+    speed: float = 1.0
+    place: tuple[float, float] | None = None
+    facing_deg: float | None = None
 
 
 class Person(Protocol):
@@ -53,6 +85,9 @@ class Person(Protocol):
 
     def lie_on(self, name: str) -> bool:
         """Begin to walk to a bed and lie down; False if it cannot."""
+
+    def play(self, play: ClipPlay) -> bool:
+        """Begin to walk to where a clip is played, and play it; False if it cannot."""
 
     def get_up(self) -> None:
         """Begin to get up, if it sits or lies."""
@@ -93,7 +128,7 @@ def free_person(
     """Return a person who stands and has paused after its walk; None while there is none."""
     person = body.person
     if person is None or time_s < 0.0 or person.activity != "standing":
-        memory["walks"] = person is not None and person.activity == "walking"
+        memory["walks"] = person is not None and person.activity in ("walking", "playing")
         return None
     if memory.pop("walks", False):
         pause_between(parameters, memory, time_s, rng)

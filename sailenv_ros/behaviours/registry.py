@@ -19,6 +19,7 @@ from pydantic import ValidationError
 from sailenv_ros.behaviours.base import BehaviourKind, RunningBehaviour
 from sailenv_ros.behaviours.joint_motion import open_and_close
 from sailenv_ros.behaviours.lie import lie
+from sailenv_ros.behaviours.play_clip import play_clip
 from sailenv_ros.behaviours.poltergeist import poltergeist
 from sailenv_ros.behaviours.rotate_rigidbody import rotate_rigidbody
 from sailenv_ros.behaviours.sit import sit
@@ -55,6 +56,7 @@ _KINDS: Mapping[str, BehaviourKind] = MappingProxyType(
             walk_around,
             sit,
             lie,
+            play_clip,
             visit,
         )
     }

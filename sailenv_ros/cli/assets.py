@@ -23,6 +23,7 @@ from sailenv_content.standard.pack_build import is_current, licence_files
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.checksums import damaged_by_manifest
 from sailenv_ros.assets.folders import own_pack_folder, pack_folders, standard_pack_folder
+from sailenv_ros.assets.motions import add_motion, read_clip
 from sailenv_ros.assets.own_pack import add_to_own_pack
 from sailenv_ros.assets.pack import BUILD_COMMAND, PACK_FILE, AssetPack
 from sailenv_ros.assets.sources import installed_packs, installed_sources
@@ -35,6 +36,7 @@ from sailenv_ros.simulation.models.import_process import import_file_apart
 from sailenv_ros.simulation.models.thumbnails import is_whole_png, thumbnail_folder
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.system.array_cache import damaged_arrays
+from sailenv_ros.types.humanoid import humanoid_of
 from sailenv_ros.types.validation import checked_integer
 
 __all__ = ["add_parser", "run"]
@@ -88,6 +90,9 @@ def add_parser(subparsers: Any) -> None:
     add.add_argument("--mass", type=float, metavar="KG", help="(default: by its size)")
     add.add_argument("--author", default="", help="for the credits")
     add.add_argument("--licence", default="", help="for the credits")
+    motion = actions.add_parser("add-motion", help="keep a BVH file of yours for people to play")
+    motion.add_argument("file", type=Path, metavar="FILE", help=".bvh")
+    motion.add_argument("--name", default="", help="(default: the file's)")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -100,6 +105,7 @@ def run(args: argparse.Namespace) -> int:
         "sheet": _sheet,
         "show": run_show,
         "add": _add,
+        "add-motion": _add_motion,
         "export": export_one_asset,
         "verify": _verify,
     }[args.action](args)
@@ -253,6 +259,16 @@ def _add(args: argparse.Namespace) -> int:
         f"{entry.name}: {entry.category}, {size} m, {entry.mass:.3g} kg, "
         f"{entry.triangles} triangles, {len(asset.collision)} collision pieces\n"
         f"in {own_pack_folder()}, pictured in {preview.name}"
+    )
+    return 0
+
+
+def _add_motion(args: argparse.Namespace) -> int:
+    humanoid_of(read_clip(args.file))
+    name, clip = add_motion(args.file, args.name)
+    print(
+        f"{name}: {len(clip.roots)} frames in {clip.duration_s:.2f} s, "
+        f"{len(clip.joint_names)} joints; for the behaviour play_clip"
     )
     return 0
 

@@ -21,10 +21,13 @@ __all__ = [
     "moment_of",
     "standing_feet",
     "way_along",
+    "way_to_stand",
     "way_to_turn",
 ]
 
 Doubles = NDArray[np.float64]
+
+_LEAST_WAY_M = 0.12
 
 MOST_TURN_RAD = 0.9
 """Of one step on the spot [rad]."""
@@ -229,6 +232,35 @@ def way_along(feet: tuple[FootPrint, FootPrint], corners: ArrayLike, stride: Str
     x, y = line.at(length)
     prints.append((side, _beside(x, y, line.heading(length), side, stride.width_m)))
     return Way(start=feet, prints=tuple(prints), step_s=stride.step_s)
+
+
+def way_to_stand(
+    feet: tuple[FootPrint, FootPrint], line: Doubles, yaw: float | None, stride: Stride
+) -> Way:
+    """Return steps along a line: turns to it first where that is needed, and at its end.
+
+    Parameters
+    ----------
+    line : (N, 2) float64
+        From where the body is [m].
+    yaw : float or None
+        Which way the body looks at the end [rad]; None for any.
+    """
+    way = Way(start=feet, prints=(), step_s=stride.step_s)
+    length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+    if length > _LEAST_WAY_M:
+        first = line[1] - line[0]
+        way = _turned(way, float(np.arctan2(first[1], first[0])), stride)
+        way = way.then(way_along(way.feet_after(len(way.prints)), line, stride))
+    return way if yaw is None else _turned(way, yaw, stride)
+
+
+def _turned(way: Way, heading: float, stride: Stride) -> Way:
+    feet = way.feet_after(len(way.prints))
+    turn = abs(_turn(moment_of(feet).yaw, heading))
+    if turn < (0.02 if way.prints else 0.35):
+        return way
+    return way.then(way_to_turn(feet, heading, stride))
 
 
 class _Line:

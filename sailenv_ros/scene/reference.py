@@ -36,6 +36,7 @@ _BEHAVIOURS = {
     "linear_waypoints": "linear_waypoints, catmull_waypoints",
     "lie": "lie",
     "open_and_close": "open_and_close",
+    "play_clip": "play_clip",
     "poltergeist": "poltergeist",
     "rotate_rigidbody": "rotate_rigidbody",
     "sit": "sit",

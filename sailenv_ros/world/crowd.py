@@ -170,6 +170,12 @@ class Crowd:
         x, y, _ = space.position_of(int(rows[number]), int(columns[number]))
         return x, y
 
+    def is_clear(self, size: BodySize, places: Doubles) -> bool:
+        """Return whether a body has room at (N, 2) places [m]."""
+        space = self.free_space(size)
+        cells = [space.cell_of((x, y)) for x, y in places.tolist()]
+        return all(cell is not None and space.cells[cell] == FREE for cell in cells)
+
     def way(
         self, size: BodySize, start: Place, goal: Place, around: Iterable[Disc] = ()
     ) -> list[Place] | None:

@@ -15,14 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S
-from sailenv_ros.behaviours.person import Activity
+from sailenv_ros.behaviours.person import Activity, ClipPlay
 from sailenv_ros.postures.footsteps import (
+    FootPrint,
     Moment,
     Stride,
     Way,
     moment_of,
     standing_feet,
-    way_along,
+    way_to_stand,
     way_to_turn,
 )
 from sailenv_ros.postures.skeleton import Posture
@@ -32,6 +33,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity
 from sailenv_ros.world.activities.lying import lanes_for, ways_to_lie
+from sailenv_ros.world.activities.playing import Playing
 from sailenv_ros.world.activities.sitting import seats_for, ways_to_sit
 from sailenv_ros.world.crowd import Crowd, body_size
 
@@ -43,7 +45,6 @@ Place = tuple[float, float]
 _BLOCKED_S = 1.2
 """Time for which one waits for another who is in the way [s]."""
 
-_LEAST_WAY_M = 0.12
 _STAND_OFF_M = 0.42
 """Distance from which one looks at a thing [m]."""
 
@@ -98,8 +99,11 @@ class Walker:
         self.matrix_before = self.matrix
         if self._way is not None:
             self._walk_on()
-        elif self._does is not None and not self._does.advance(self.matrix):
-            self.leave()
+        elif self._does is not None:
+            goes_on = self._does.advance(self.matrix)
+            self.matrix = self._does.moved(self._matrix_of_moment())
+            if not goes_on:
+                self.leave()
         if self.crowd is not None:
             x, y = self._place
             self.crowd.people[self._name] = (x, y, self._radius_m)
@@ -157,6 +161,16 @@ class Walker:
         """Begin to walk to a bed and lie down; False if it cannot."""
         return self.crowd is not None and self._go_and(ways_to_lie(self._actor, self.crowd, name))
 
+    def play(self, play: ClipPlay) -> bool:
+        """Begin to walk to where a clip is played, and play it; False if it cannot."""
+        if self.crowd is None:
+            return False
+        playing = Playing(self._actor, play, self._place, _yaw_of(self.matrix))
+        if not self.crowd.is_clear(self._size, playing.way()):
+            self.problem = f"there is no room for the clip {play.clip!r}"
+            return False
+        return self._go_and([playing])
+
     def get_up(self) -> None:
         """Begin to get up, if it sits or lies."""
         if self._does is not None and self._way is None:
@@ -200,14 +214,16 @@ class Walker:
     def _stand_at(self, pose: Pose) -> None:
         matrix = pose.matrix()
         self._actor = replace(self._actor, floor_m=float(matrix[2, 3]))
-        yaw = float(np.arctan2(matrix[1, 0], matrix[0, 0]))
-        width = self._figure.stride.width_m * self._scale
-        self._feet = standing_feet(float(matrix[0, 3]), float(matrix[1, 3]), yaw, width)
+        self._feet = self._feet_at(matrix)
         self._way = None
         self._way_s = 0.0
         self._waited_s = 0.0
         self._goal: tuple[Place, float | None] | None = None
         self._looks_at = ""
+
+    def _feet_at(self, matrix: Doubles) -> tuple[FootPrint, FootPrint]:
+        width = self._figure.stride.width_m * self._scale
+        return standing_feet(float(matrix[0, 3]), float(matrix[1, 3]), _yaw_of(matrix), width)
 
     def _moment(self) -> Moment:
         if self._way is not None:
@@ -245,31 +261,13 @@ class Walker:
             self.problem = "no way leads there"
             return False
         self.problem = ""
-        stride = self._stride()
-        way = Way(start=self._feet, prints=(), step_s=stride.step_s)
         line = np.array([self._place, *corners[1:]])
-        length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
-        if length > _LEAST_WAY_M:
-            first = line[1] - line[0]
-            heading = float(np.arctan2(first[1], first[0]))
-            way = self._turned(way, heading)
-            way = way.then(way_along(way.feet_after(len(way.prints)), line, stride))
-        if yaw is not None:
-            way = self._turned(way, yaw)
+        way = way_to_stand(self._feet, line, yaw, self._stride())
         if not way.prints:
             return True
         self._way, self._way_s, self._waited_s = way, 0.0, 0.0
         self._looks_at = ""
         return True
-
-    def _turned(self, way: Way, heading: float) -> Way:
-        feet = way.feet_after(len(way.prints))
-        now = moment_of(feet).yaw
-        if abs((heading - now + np.pi) % (2.0 * np.pi) - np.pi) < 0.35 and way.prints == ():
-            return way
-        if abs((heading - now + np.pi) % (2.0 * np.pi) - np.pi) < 0.02:
-            return way
-        return way.then(way_to_turn(feet, heading, self._stride()))
 
     def _walk_on(self) -> None:
         way = self._way
@@ -322,8 +320,14 @@ class Walker:
 
     def leave(self) -> None:
         """Do nothing on the spot any more."""
+        if self._does is not None and self._does.travels and self._way is None:
+            self._feet = self._feet_at(self.matrix)
         if self._does is not None and self._does.piece:
             self.pass_through(self._does.piece, False)
         self._does = None
         if self.crowd is not None:
             self.crowd.taken.pop(self._name, None)
+
+
+def _yaw_of(matrix: Doubles) -> float:
+    return float(np.arctan2(matrix[1, 0], matrix[0, 0]))

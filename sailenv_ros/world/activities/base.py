@@ -87,12 +87,15 @@ class SpotActivity(ABC):
         Name of the object that limbs pass through meanwhile; empty for none.
     takes : tuple of (2,) tuples of float
         Places that nobody else is to use meanwhile [m].
+    travels : bool
+        True if the body ends elsewhere than it began.
     """
 
     feet: Place
     yaw: float | None = None
     piece: str = ""
     takes: tuple[Place, ...] = ()
+    travels: bool = False
 
     @property
     @abstractmethod
@@ -106,6 +109,10 @@ class SpotActivity(ABC):
     @abstractmethod
     def end(self) -> None:
         """Begin to end it."""
+
+    def moved(self, begin: Doubles) -> Doubles:
+        """Return the pose of the body now, by the one in which it began."""
+        return begin
 
     @abstractmethod
     def posture(self, now: Instant) -> Posture:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.behaviours import BodyState, RunningBehaviour, start_behaviour
+from sailenv_ros.behaviours.person import ClipPlay
 from sailenv_ros.types.geometry import Pose
 
 
@@ -33,6 +34,9 @@ class NotedPerson:
 
     def lie_on(self, name: str) -> bool:
         return self._walks("lie", name)
+
+    def play(self, play: ClipPlay) -> bool:
+        return self._walks("play", play)
 
     def get_up(self) -> None:
         self.told.append(("up", None))
@@ -111,6 +115,14 @@ def test_one_lies_for_a_while_and_gets_up() -> None:
     other = NotedPerson()
     live(running("lie", beds=["sofa"]), other, 5.0)
     assert other.told == []
+
+
+def test_one_plays_a_clip_again_and_again() -> None:
+    person = NotedPerson()
+    clip = "pybullet_data:data/motions/humanoid3d_walk.txt"
+    live(running("play_clip", clip=clip, times=3, place=[1.0, 2.0], pause=(0.2, 0.3)), person, 9.0)
+    assert len(person.told) > 2
+    assert set(person.told) == {("play", ClipPlay(clip, 3, 1.0, (1.0, 2.0), None))}
 
 
 def test_one_visits_things_in_turn_and_looks_at_them() -> None:
