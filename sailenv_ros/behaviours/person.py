@@ -32,6 +32,7 @@ Activity: TypeAlias = Literal[
     "lying",
     "getting up",
     "playing",
+    "reaching",
 ]
 
 Seconds = Annotated[float, Number(least=0.0, most=1e5, unit="s")]
@@ -88,6 +89,16 @@ class Person(Protocol):
 
     def play(self, play: ClipPlay) -> bool:
         """Begin to walk to where a clip is played, and play it; False if it cannot."""
+
+    @property
+    def holds(self) -> str:
+        """Name of what it has in its hand; empty for nothing."""
+
+    def take(self, name: str) -> bool:
+        """Begin to walk to a thing and take it in the hand; False if it cannot."""
+
+    def put_on(self, name: str) -> bool:
+        """Begin to walk to a piece and put on it what it holds; False if it cannot."""
 
     def get_up(self) -> None:
         """Begin to get up, if it sits or lies."""

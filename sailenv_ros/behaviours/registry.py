@@ -17,6 +17,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from sailenv_ros.behaviours.base import BehaviourKind, RunningBehaviour
+from sailenv_ros.behaviours.fetch import fetch
 from sailenv_ros.behaviours.joint_motion import open_and_close
 from sailenv_ros.behaviours.lie import lie
 from sailenv_ros.behaviours.play_clip import play_clip
@@ -56,6 +57,7 @@ _KINDS: Mapping[str, BehaviourKind] = MappingProxyType(
             walk_around,
             sit,
             lie,
+            fetch,
             play_clip,
             visit,
         )

@@ -22,7 +22,7 @@ from sailenv_ros.postures.standing import (
 )
 from sailenv_ros.types.rig import Rig
 
-__all__ = ["walking_posture"]
+__all__ = ["own_print", "walking_posture"]
 
 Doubles = NDArray[np.float64]
 
@@ -59,13 +59,13 @@ def walking_posture(
     """
     figure = figure_of(rig)
     stands = moment.swinging < 0
-    own = [_own(moment, place) for place in moment.feet]
+    own = [own_print(moment, place) for place in moment.feet]
     swing = moment.swinging
     vigour = 0.0 if stands else min(moment.ahead_m / (1.5 * figure.leg_m), 1.0)
     feet = [_standing_foot(figure, place, 0.0, 0.0) for place in own]
     if not stands:
         assert moment.goal is not None
-        goal = _own(moment, moment.goal)
+        goal = own_print(moment, moment.goal)
         stance = 1 - swing
         early = max(0.0, 1.0 - (moment.share + 1.0 - _LANDS) / 0.2)
         length = min(moment.before_m / (1.5 * figure.leg_m), 1.0)
@@ -104,7 +104,7 @@ def walking_posture(
     return Posture(root_m=root, turns=turns)
 
 
-def _own(moment: Moment, place: FootPrint) -> FootPrint:
+def own_print(moment: Moment, place: FootPrint) -> FootPrint:
     """Return a print in the frame of the body."""
     c, s = float(np.cos(moment.yaw)), float(np.sin(moment.yaw))
     x, y = place.x - moment.x, place.y - moment.y

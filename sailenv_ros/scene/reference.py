@@ -34,6 +34,7 @@ _RANDOM = {
 
 _BEHAVIOURS = {
     "linear_waypoints": "linear_waypoints, catmull_waypoints",
+    "fetch": "fetch",
     "lie": "lie",
     "open_and_close": "open_and_close",
     "play_clip": "play_clip",

@@ -170,6 +170,37 @@ class Crowd:
         x, y, _ = space.position_of(int(rows[number]), int(columns[number]))
         return x, y
 
+    def places_beside(
+        self, name: str, size: BodySize, place: Place, most_m: float, count: int = 4
+    ) -> list[Place]:
+        """Return free places that a person can reach near a place, the nearest first [m]."""
+        space = self.free_space(size)
+        x, y, _ = self.people.get(name, (*place, 0.0))
+        start = self._nearest(space, (x, y))
+        if start is None:
+            return []
+        rows, columns = np.nonzero(space.regions == space.regions[start])
+        side = space.resolution_m
+        found = np.stack(
+            [
+                space.origin_m[0] + (columns + 0.5) * side,
+                space.origin_m[1] + (rows + 0.5) * side,
+            ],
+            axis=1,
+        )
+        away = np.linalg.norm(found - place, axis=1)
+        chosen: list[Place] = []
+        for number in np.argsort(away, kind="stable").tolist():
+            if away[number] > most_m or len(chosen) >= count:
+                break
+            if all(np.hypot(*(found[number] - one)) > 0.3 for one in chosen):
+                chosen.append((float(found[number, 0]), float(found[number, 1])))
+        return chosen
+
+    def bodies(self, without: str = "") -> list[Body]:
+        """Return the bodies that are no people, but one."""
+        return [body for body in self._bodies() if body.placement.name != without]
+
     def is_clear(self, size: BodySize, places: Doubles) -> bool:
         """Return whether a body has room at (N, 2) places [m]."""
         space = self.free_space(size)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.postures.reaching import grip_place
 from sailenv_ros.postures.skeleton import joint_frames, skin_matrices
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.geometry import Pose
@@ -21,6 +22,7 @@ from sailenv_ros.types.rig import Rig
 from sailenv_ros.types.skeleton import Skeleton
 from sailenv_ros.world.bodies import Body, FrustumPlanes, Vector3
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
+from sailenv_ros.world.carrying import carry
 from sailenv_ros.world.labelled_pieces import LabelledPiece
 from sailenv_ros.world.limbs import Limbs
 from sailenv_ros.world.placement import Placement
@@ -198,6 +200,7 @@ class PersonBody(Body):
     def advance(self, time_s: float) -> None:
         """Do what is to be done in the step that begins at a simulated time [s]."""
         self.walker.advance(time_s)
+        self._carry()
         self._steps += 1
         if self._steps % _LIMB_STEPS == 0:
             self._place_limbs()
@@ -206,6 +209,22 @@ class PersonBody(Body):
         if self._limbs is not None:
             _, places = joint_frames(self._rig, self.walker.posture)
             self._limbs.place(self.walker.matrix, places)
+
+    def _carry(self) -> None:
+        """Move what is in the hand to where it is at the end of the step."""
+        held, crowd = self.walker.held, self.walker.crowd
+        if held is None:
+            return
+        body = None if crowd is None else crowd.body(held.name)
+        if body is None:
+            self.walker.held = None
+            return
+        turns, places = joint_frames(self._rig, self.walker.posture)
+        matrix = self.walker.matrix
+        middle = self._scale * grip_place(self._rig, turns, places, held.grip)
+        turn = matrix[:3, :3] @ held.turn
+        origin = matrix[:3, :3] @ middle + matrix[:3, 3] - turn @ held.middle
+        carry(self._client, body, turn, origin)
 
     def _pass_through(self, name: str, passes: bool) -> None:
         crowd = self.walker.crowd

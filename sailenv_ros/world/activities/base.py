@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours.person import Activity
 from sailenv_ros.postures.figure import Figure, figure_of
 from sailenv_ros.postures.footsteps import Moment
+from sailenv_ros.postures.reaching import Grip
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.types.model import Asset
 from sailenv_ros.types.rig import Rig
 
-__all__ = ["Actor", "Instant", "Place", "SpotActivity"]
+__all__ = ["Actor", "Held", "Instant", "Place", "SpotActivity"]
 
 Doubles = NDArray[np.float64]
 Place = tuple[float, float]
@@ -74,6 +75,26 @@ class Instant:
     look_deg: tuple[float, float]
 
 
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Held:
+    """What a person has in its hand.
+
+    Attributes
+    ----------
+    name : str
+    grip : Grip
+    middle : (3,) float64
+        Of the thing, in its own frame, scale included [m].
+    turn : (3, 3) float64
+        Of the thing from the axes of the person.
+    """
+
+    name: str
+    grip: Grip
+    middle: Doubles
+    turn: Doubles
+
+
 class SpotActivity(ABC):
     """Something that a person does where it stands.
 
@@ -103,8 +124,16 @@ class SpotActivity(ABC):
         """Word for it now."""
 
     @abstractmethod
-    def advance(self, world_from_body: Doubles) -> bool:
-        """Go on by a step where the body stands; return False once it is over."""
+    def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
+        """Go on by a step; return False once it is over.
+
+        Parameters
+        ----------
+        world_from_body : (4, 4) float64
+            Where the body is.
+        moment : Moment
+            Of its feet, before the scale.
+        """
 
     @abstractmethod
     def end(self) -> None:
@@ -113,6 +142,10 @@ class SpotActivity(ABC):
     def moved(self, begin: Doubles) -> Doubles:
         """Return the pose of the body now, by the one in which it began."""
         return begin
+
+    def held(self, before: Held | None) -> Held | None:
+        """Return what is in the hand now, by what was in it when it began."""
+        return before
 
     @abstractmethod
     def posture(self, now: Instant) -> Posture:

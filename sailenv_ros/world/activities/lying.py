@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.behaviours.person import Activity
 from sailenv_ros.postures.blending import JointTurns
+from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.lying import SINK_M, Ground, depths, lying_posture, tucked_posture
 from sailenv_ros.postures.skeleton import Posture, turn_about
 from sailenv_ros.postures.standing import breathing
@@ -101,18 +102,18 @@ class Lying(SpotActivity):
             return "getting up"
         return "lying" if self._done_s >= LIE_S else "lying down"
 
-    def advance(self, world_from_body: Doubles) -> bool:
+    def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
         """Go on by a step; return False once the person stands again."""
         if self._plan is None:
             self._plan = self._made(world_from_body)
         if self._rises and self._done_s <= 0.0:
             self._sitting.end()
-            return self._sitting.advance(world_from_body)
+            return self._sitting.advance(world_from_body, moment)
         if self._sitting.word == "seated":
             step = -STEP_S if self._rises else STEP_S
             self._done_s = float(np.clip(self._done_s + step, 0.0, LIE_S))
             return True
-        return self._sitting.advance(world_from_body)
+        return self._sitting.advance(world_from_body, moment)
 
     def end(self) -> None:
         """Begin to get up."""

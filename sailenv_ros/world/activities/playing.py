@@ -9,6 +9,7 @@ from sailenv_ros.assets.motions import find_clip
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.behaviours.person import Activity, ClipPlay
 from sailenv_ros.postures.blending import JointTurns
+from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.retargeting import retargeted
 from sailenv_ros.postures.skeleton import Posture, turn_about
 from sailenv_ros.postures.walking import walking_posture
@@ -68,7 +69,7 @@ class Playing(SpotActivity):
         keep = np.unique(np.searchsorted(away, np.arange(0.0, away[-1] + _SPACING_M, _SPACING_M)))
         return places[np.minimum(keep, len(places) - 1)]
 
-    def advance(self, world_from_body: Doubles) -> bool:
+    def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
         """Go on by a step; return False once the person stands again."""
         self._done_s += STEP_S * (self._speed if 0.0 <= self._done_s < self._length_s else 1.0)
         if self._done_s >= self._length_s and self._round + 1 < self._times and not self._stops:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.behaviours.person import Activity
 from sailenv_ros.postures.figure import figure_of
-from sailenv_ros.postures.footsteps import moment_of, standing_feet
+from sailenv_ros.postures.footsteps import Moment, moment_of, standing_feet
 from sailenv_ros.postures.sitting import SIT_S, SeatPlace, seat_distance_m, sitting_posture
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity
@@ -56,7 +56,7 @@ class Sitting(SpotActivity):
             return "getting up"
         return "seated" if self._done_s >= SIT_S else "sitting down"
 
-    def advance(self, world_from_body: Doubles) -> bool:
+    def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
         """Go on by a step; return False once the person stands again."""
         self._done_s = min(self._done_s + (-STEP_S if self._rises else STEP_S), SIT_S)
         return self._done_s > 0.0

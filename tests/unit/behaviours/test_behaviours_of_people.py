@@ -38,6 +38,16 @@ class NotedPerson:
     def play(self, play: ClipPlay) -> bool:
         return self._walks("play", play)
 
+    holds = ""
+
+    def take(self, name: str) -> bool:
+        self.holds = name
+        return self._walks("take", name)
+
+    def put_on(self, name: str) -> bool:
+        self.holds = ""
+        return self._walks("put", name)
+
     def get_up(self) -> None:
         self.told.append(("up", None))
         self.activity = "standing"
@@ -123,6 +133,16 @@ def test_one_plays_a_clip_again_and_again() -> None:
     live(running("play_clip", clip=clip, times=3, place=[1.0, 2.0], pause=(0.2, 0.3)), person, 9.0)
     assert len(person.told) > 2
     assert set(person.told) == {("play", ClipPlay(clip, 3, 1.0, (1.0, 2.0), None))}
+
+
+def test_one_fetches_things_and_stops() -> None:
+    person = NotedPerson()
+    live(
+        running("fetch", objects=["mug"], to=["table", "desk"], times=2, pause=(0.1, 0.2)),
+        person,
+        20.0,
+    )
+    assert person.told == [("take", "mug"), ("put", "table"), ("take", "mug"), ("put", "desk")]
 
 
 def test_one_visits_things_in_turn_and_looks_at_them() -> None:

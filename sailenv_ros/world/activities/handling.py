@@ -1,0 +1,201 @@
+"""Taking a thing in the hand, and putting it down: where one stands for it, and the hand's way."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.behaviours import STEP_S
+from sailenv_ros.behaviours.person import Activity
+from sailenv_ros.postures.blending import JointTurns
+from sailenv_ros.postures.footsteps import Moment
+from sailenv_ros.postures.reaching import Grip, on_its_feet, reaching_posture, with_carrying_arm
+from sailenv_ros.postures.skeleton import Posture
+from sailenv_ros.postures.walking import walking_posture
+from sailenv_ros.space.free_space import BodySize
+from sailenv_ros.types.geometry import invert
+from sailenv_ros.world.activities.base import Actor, Held, Instant, Place, SpotActivity
+from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.crowd import Crowd
+from sailenv_ros.world.surfaces import free_spots
+
+__all__ = ["Putting", "Taking", "can_be_taken", "ways_to_put", "ways_to_take"]
+
+Doubles = NDArray[np.float64]
+
+_REACH_S, _GRIP_S = 1.2, 0.2
+"""Time of the hand's way there, and back, and to close or open [s]."""
+
+_HEAVIEST_KG, _WIDEST_M, _LONGEST_M = 4.0, 0.11, 0.45
+"""Of what one hand takes: its mass, its width between palm and fingers, its longest side."""
+
+_FARTHEST_M = 0.72
+"""From where one stands to what one takes, at most [m]."""
+
+_ABOVE_M = 0.003
+"""From which a thing is let go [m]."""
+
+
+class _Handling(SpotActivity):
+    """A hand that goes somewhere and comes back."""
+
+    def __init__(
+        self, actor: Actor, name: str, goal: Doubles, grip: Grip, feet: Place, yaw: float
+    ) -> None:
+        self._actor, self._goal, self._grip = actor, goal, grip
+        self.feet, self.yaw, self.piece = feet, yaw, name
+        self._done_s = 0.0
+        self._turn = np.eye(3)
+        self._reaches: Posture | None = None
+
+    @property
+    def word(self) -> Activity:
+        """Word for it now."""
+        return "reaching"
+
+    def end(self) -> None:
+        """Nothing: it does not take long."""
+
+    def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
+        """Go on by a step; return False once it is done, or cannot be done."""
+        if self._done_s == 0.0:
+            self._turn = world_from_body[:3, :3]
+            own = invert(world_from_body)
+            goal = (own[:3, :3] @ self._goal + own[:3, 3]) / self._actor.scale
+            stands = walking_posture(self._actor.rig, moment, 0.0)
+            self._reaches = reaching_posture(self._actor.rig, stands, moment, goal, self._grip)
+        self._done_s += STEP_S
+        return self._reaches is not None and self._done_s < 2.0 * _REACH_S + _GRIP_S
+
+    @property
+    def _gripped(self) -> bool:
+        return self._done_s >= _REACH_S + 0.5 * _GRIP_S
+
+    def _share(self) -> float:
+        """Share of the way to the thing."""
+        back = self._done_s - _REACH_S - _GRIP_S
+        share = self._done_s / _REACH_S if back < 0.0 else 1.0 - back / _REACH_S
+        share = float(np.clip(share, 0.0, 1.0))
+        return share * share * share * (share * (6.0 * share - 15.0) + 10.0)
+
+    def posture(self, now: Instant) -> Posture:
+        """Return the posture, in the frame of the body."""
+        rig = self._actor.rig
+        stands = walking_posture(rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg)
+        begin = with_carrying_arm(rig, stands) if self._carries else stands
+        if self._reaches is None:
+            return begin
+        one, two = (JointTurns.of(rig, each) for each in (begin, self._reaches))
+        return on_its_feet(rig, one.towards(two, self._share()).posture(rig), now.moment)
+
+    @property
+    @abstractmethod
+    def _carries(self) -> bool:
+        """Whether something is in the hand now."""
+
+
+class Taking(_Handling):
+    """A person who takes a thing; parameters as `_Handling`, and the thing."""
+
+    def __init__(self, actor: Actor, body: Body, feet: Place, yaw: float) -> None:
+        grip = grip_of(body, actor.scale)
+        super().__init__(actor, body.placement.name, _middle(body), grip, feet, yaw)
+        self._body = body
+        self._held: Held | None = None
+
+    def held(self, before: Held | None) -> Held | None:
+        """Return what is in the hand now."""
+        if not self._gripped or self._reaches is None:
+            return before
+        if self._held is None:
+            matrix = self._body.world_from_body()
+            self._held = Held(
+                name=self.piece,
+                grip=self._grip,
+                middle=_own_middle(self._body),
+                turn=self._turn.T @ matrix[:3, :3],
+            )
+        return self._held
+
+    @property
+    def _carries(self) -> bool:
+        return self._gripped
+
+
+class Putting(_Handling):
+    """A person who puts down what it holds; parameters as `_Handling`, what is held, and where."""
+
+    def __init__(self, actor: Actor, held: Held, goal: Doubles, feet: Place, yaw: float) -> None:
+        super().__init__(actor, held.name, goal, held.grip, feet, yaw)
+
+    def held(self, before: Held | None) -> Held | None:
+        """Return what is in the hand now."""
+        return None if self._gripped and self._reaches is not None else before
+
+    @property
+    def _carries(self) -> bool:
+        return not self._gripped
+
+
+def grip_of(body: Body, scale: float) -> Grip:
+    """Return how a hand holds a thing: by its narrower level side."""
+    size = _size(body)
+    return Grip(half_m=0.5 * float(min(size[0], size[1])) / scale)
+
+
+def can_be_taken(body: Body) -> bool:
+    """Return whether a hand can take a thing."""
+    placement, size = body.placement, _size(body)
+    return (
+        not placement.static
+        and placement.joint is None
+        and placement.asset.rig is None
+        and body.collides
+        and body.mass_kg <= _HEAVIEST_KG
+        and float(min(size[0], size[1])) <= _WIDEST_M
+        and float(size.max()) <= _LONGEST_M
+    )
+
+
+def ways_to_take(actor: Actor, crowd: Crowd, size: BodySize, name: str) -> Iterator[Taking]:
+    """Yield the ways to take a thing, from the nearest places to stand."""
+    body = crowd.body(name)
+    if body is None or not can_be_taken(body):
+        return
+    x, y, _ = _middle(body).tolist()
+    for feet in crowd.places_beside(actor.name, size, (x, y), _FARTHEST_M):
+        yield Taking(actor, body, feet, float(np.arctan2(y - feet[1], x - feet[0])))
+
+
+def ways_to_put(
+    actor: Actor, crowd: Crowd, size: BodySize, held: Held, name: str
+) -> Iterator[Putting]:
+    """Yield the ways to put what is held on a piece."""
+    body, thing = crowd.body(name), crowd.body(held.name)
+    if body is None or thing is None:
+        return
+    extent = _size(thing)
+    around = 0.5 * float(np.hypot(extent[0], extent[1]))
+    for spot in free_spots(body, crowd.bodies(without=held.name), around):
+        for feet in crowd.places_beside(actor.name, size, (spot[0], spot[1]), _FARTHEST_M, count=1):
+            goal = spot + np.array([0.0, 0.0, 0.5 * float(extent[2]) + _ABOVE_M])
+            yaw = float(np.arctan2(spot[1] - feet[1], spot[0] - feet[0]))
+            yield Putting(actor, held, goal, feet, yaw)
+
+
+def _size(body: Body) -> Doubles:
+    """Return (3,): the sides of a thing's box [m]."""
+    return np.asarray(np.ptp(body.placement.asset.model.bounds(), axis=0) * body.placement.scale)
+
+
+def _own_middle(body: Body) -> Doubles:
+    bounds = body.placement.asset.model.bounds()
+    return np.asarray(bounds.mean(axis=0) * body.placement.scale)
+
+
+def _middle(body: Body) -> Doubles:
+    matrix = body.world_from_body()
+    return np.asarray(matrix[:3, :3] @ _own_middle(body) + matrix[:3, 3])

@@ -1,0 +1,189 @@
+"""A person's steps: the way that it goes, foot by foot, round others and up to its end.
+
+Knows the crowd around, and not the engine; what is done where a way ends is told elsewhere.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.behaviours import STEP_S
+from sailenv_ros.postures.footsteps import (
+    FootPrint,
+    Moment,
+    Stride,
+    Way,
+    moment_of,
+    standing_feet,
+    way_to_stand,
+    way_to_turn,
+)
+from sailenv_ros.space.free_space import BodySize
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import Asset
+from sailenv_ros.world.activities.base import Actor
+from sailenv_ros.world.crowd import Crowd, body_size
+
+__all__ = ["Place", "Stepper", "yaw_of"]
+
+Doubles = NDArray[np.float64]
+Place = tuple[float, float]
+
+_BLOCKED_S = 1.2
+"""Time for which one waits for another who is in the way [s]."""
+
+
+class Stepper:
+    """One person on its feet.
+
+    Parameters
+    ----------
+    name : str
+        Of the person.
+    asset : Asset
+        With a rig.
+    scale : float
+
+    Attributes
+    ----------
+    crowd : Crowd or None
+        What it knows of the world; without it, it stands.
+    problem : str
+        Why it has not arrived where it was last sent; empty if it has.
+    matrix : (4, 4) float64
+        World from the body now.
+    """
+
+    _way: Way | None
+    matrix: Doubles
+
+    def __init__(self, name: str, asset: Asset, scale: float) -> None:
+        self._name, self._scale = name, scale
+        self._actor = Actor(name=name, asset=asset, scale=scale, floor_m=0.0)
+        self._figure = self._actor.figure
+        self.crowd: Crowd | None = None
+        self.problem = ""
+        self._looks_at = ""
+
+    @property
+    def _radius_m(self) -> float:
+        return self._size.radius_m
+
+    @property
+    def _size(self) -> BodySize:
+        return body_size(self._figure.height_m * 1.12 * self._scale, self._actor.floor_m)
+
+    @property
+    def _place(self) -> Place:
+        return float(self.matrix[0, 3]), float(self.matrix[1, 3])
+
+    def _stand_at(self, pose: Pose) -> None:
+        matrix = pose.matrix()
+        self._actor = replace(self._actor, floor_m=float(matrix[2, 3]))
+        self._feet = self._feet_at(matrix)
+        self._way = None
+        self._way_s = 0.0
+        self._waited_s = 0.0
+        self._goal: tuple[Place, float | None] | None = None
+        self._looks_at = ""
+        self.matrix = self._matrix_of_moment()
+
+    def _feet_at(self, matrix: Doubles) -> tuple[FootPrint, FootPrint]:
+        width = self._figure.stride.width_m * self._scale
+        return standing_feet(float(matrix[0, 3]), float(matrix[1, 3]), yaw_of(matrix), width)
+
+    def _moment(self) -> Moment:
+        if self._way is not None:
+            return self._way.at(self._way_s)
+        return moment_of(self._feet)
+
+    def _own_moment(self) -> Moment:
+        """Return it before the scale."""
+        return self._moment().scaled(1.0 / self._scale)
+
+    def _matrix_of_moment(self) -> Doubles:
+        moment = self._moment()
+        c, s = math.cos(moment.yaw), math.sin(moment.yaw)
+        return np.array([
+            [c, -s, 0.0, moment.x],
+            [s, c, 0.0, moment.y],
+            [0.0, 0.0, 1.0, self._actor.floor_m],
+            [0.0, 0.0, 0.0, 1.0],
+        ])  # fmt: skip
+
+    def _stride(self) -> Stride:
+        stride = self._figure.stride
+        return replace(
+            stride,
+            length_m=stride.length_m * self._scale,
+            width_m=stride.width_m * self._scale,
+        )
+
+    def _go(self, place: Place, yaw: float | None) -> bool:
+        if self.crowd is None:
+            return False
+        corners = self.crowd.way(self._size, self._place, place)
+        self._goal = (place, yaw)
+        return self._follow(corners, yaw)
+
+    def _follow(self, corners: list[Place] | None, yaw: float | None) -> bool:
+        """Begin to go along corners; turn to them first, and at the end."""
+        if corners is None:
+            self.problem = "no way leads there"
+            return False
+        self.problem = ""
+        line = np.array([self._place, *corners[1:]])
+        way = way_to_stand(self._feet, line, yaw, self._stride())
+        if not way.prints:
+            return True
+        self._way, self._way_s, self._waited_s = way, 0.0, 0.0
+        self._looks_at = ""
+        return True
+
+    def _walk_on(self) -> None:
+        way = self._way
+        assert way is not None
+        number, later = (int(t / way.step_s + 1e-9) for t in (self._way_s, self._way_s + STEP_S))
+        if later > number or self._way_s == 0.0:
+            if self.crowd is not None and self.crowd.blocks(self._name, self._radius_m, way, later):
+                self._wait(way, later)
+                return
+            self._waited_s = 0.0
+        self._way_s += STEP_S
+        if self._way_s >= way.duration_s:
+            self._feet = way.feet_after(len(way.prints))
+            self._way = None
+        self.matrix = self._matrix_of_moment()
+
+    def _wait(self, way: Way, number: int) -> None:
+        """Stand where a step has ended; go round who stands in the way, or give up."""
+        self._waited_s += STEP_S
+        if self._waited_s < _BLOCKED_S:
+            return
+        assert self.crowd is not None
+        self._feet = way.feet_after(number)
+        self._way, self._waited_s = None, 0.0
+        discs = self.crowd.discs(self._name)
+        corners, goal = None, self._goal
+        if goal is not None:
+            corners = self.crowd.way(self._size, self._place, goal[0], discs)
+        if corners is not None and goal is not None and self._follow(corners, goal[1]):
+            return
+        self.problem = "someone stands in the way"
+        self._stopped()
+        # Put the feet side by side where it stands.
+        yaw = self._moment().yaw
+        way = way_to_turn(self._feet, yaw, self._stride())
+        self._way, self._way_s, self._goal = way, 0.0, None
+
+    def _stopped(self) -> None:
+        """Give up what was to be done at the end of the way."""
+
+
+def yaw_of(matrix: Doubles) -> float:
+    """Return which way a body looks [rad]."""
+    return float(np.arctan2(matrix[1, 0], matrix[0, 0]))
