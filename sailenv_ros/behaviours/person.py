@@ -37,6 +37,8 @@ Activity: TypeAlias = Literal[
 
 Seconds = Annotated[float, Number(least=0.0, most=1e5, unit="s")]
 
+_PAUSES_AFTER = frozenset({"walking", "playing", "reaching"})
+
 ASK_AGAIN_S = 0.5
 """Time after which one who found no way asks again [s]."""
 
@@ -100,6 +102,9 @@ class Person(Protocol):
     def put_on(self, name: str) -> bool:
         """Begin to walk to a piece and put on it what it holds; False if it cannot."""
 
+    def open(self, name: str) -> bool:
+        """Begin to walk to a door or a drawer and open or close it; False if it cannot."""
+
     def get_up(self) -> None:
         """Begin to get up, if it sits or lies."""
 
@@ -139,7 +144,7 @@ def free_person(
     """Return a person who stands and has paused after its walk; None while there is none."""
     person = body.person
     if person is None or time_s < 0.0 or person.activity != "standing":
-        memory["walks"] = person is not None and person.activity in ("walking", "playing")
+        memory["walks"] = person is not None and person.activity in _PAUSES_AFTER
         return None
     if memory.pop("walks", False):
         pause_between(parameters, memory, time_s, rng)

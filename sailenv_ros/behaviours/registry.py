@@ -20,6 +20,7 @@ from sailenv_ros.behaviours.base import BehaviourKind, RunningBehaviour
 from sailenv_ros.behaviours.fetch import fetch
 from sailenv_ros.behaviours.joint_motion import open_and_close
 from sailenv_ros.behaviours.lie import lie
+from sailenv_ros.behaviours.open_by_hand import open_by_hand
 from sailenv_ros.behaviours.play_clip import play_clip
 from sailenv_ros.behaviours.poltergeist import poltergeist
 from sailenv_ros.behaviours.rotate_rigidbody import rotate_rigidbody
@@ -58,6 +59,7 @@ _KINDS: Mapping[str, BehaviourKind] = MappingProxyType(
             sit,
             lie,
             fetch,
+            open_by_hand,
             play_clip,
             visit,
         )

@@ -37,6 +37,7 @@ _BEHAVIOURS = {
     "fetch": "fetch",
     "lie": "lie",
     "open_and_close": "open_and_close",
+    "open_by_hand": "open_by_hand",
     "play_clip": "play_clip",
     "poltergeist": "poltergeist",
     "rotate_rigidbody": "rotate_rigidbody",

@@ -84,12 +84,10 @@ class Limbs:
             if client.getDynamicsInfo(other, LINK_OF_BASE)[0]:
                 wake(client, other)
 
-    def pass_through(self, other: int, *, passes: bool) -> None:
-        """Let the limbs pass through a body of the engine, or not."""
+    def pass_through(self, other: int, link: int, *, passes: bool) -> None:
+        """Let the limbs pass through a link of a body of the engine, or not."""
         for body in self.ids:
-            self._client.setCollisionFilterPair(
-                body, other, LINK_OF_BASE, LINK_OF_BASE, 0 if passes else 1
-            )
+            self._client.setCollisionFilterPair(body, other, LINK_OF_BASE, link, int(not passes))
 
     def remove(self) -> None:
         """Take them out of the engine."""

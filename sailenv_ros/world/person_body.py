@@ -230,7 +230,7 @@ class PersonBody(Body):
         crowd = self.walker.crowd
         body = None if crowd is None else crowd.body(name)
         if body is not None and self._limbs is not None:
-            self._limbs.pass_through(body.bullet_id, passes=passes)
+            self._limbs.pass_through(body.bullet_id, body.link, passes=passes)
 
 
 def deformations_of(

@@ -22,6 +22,7 @@ from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Held, Instant, SpotActivity
 from sailenv_ros.world.activities.handling import ways_to_put, ways_to_take
 from sailenv_ros.world.activities.lying import lanes_for, ways_to_lie
+from sailenv_ros.world.activities.opening import ways_to_open
 from sailenv_ros.world.activities.playing import Playing
 from sailenv_ros.world.activities.sitting import seats_for, ways_to_sit
 from sailenv_ros.world.stepper import Place, Stepper, yaw_of
@@ -166,6 +167,12 @@ class Walker(Stepper):
         if self.crowd is None or self.held is None:
             return False
         return self._go_and(ways_to_put(self._actor, self.crowd, self._size, self.held, name))
+
+    def open(self, name: str) -> bool:
+        """Begin to walk to a door or a drawer and open or close it; False if it cannot."""
+        if self.crowd is None or self.held is not None:
+            return False
+        return self._go_and(ways_to_open(self._actor, self.crowd, self._size, name))
 
     def get_up(self) -> None:
         """Begin to get up, if it sits or lies."""

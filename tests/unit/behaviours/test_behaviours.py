@@ -45,7 +45,7 @@ CORNERS: list[dict[str, Any]] = [
     {"position": [0, 2, 1], "rotation": [0, 0, -90]},
 ]
 
-OF_PEOPLE = ("walk_around", "sit", "lie", "visit", "play_clip", "fetch")
+OF_PEOPLE = ("walk_around", "sit", "lie", "visit", "play_clip", "fetch", "open_by_hand")
 """See `test_behaviours_of_people`."""
 
 ALL: dict[str, dict[str, Any]] = {

@@ -48,6 +48,9 @@ class NotedPerson:
         self.holds = ""
         return self._walks("put", name)
 
+    def open(self, name: str) -> bool:
+        return self._walks("open", name)
+
     def get_up(self) -> None:
         self.told.append(("up", None))
         self.activity = "standing"
@@ -143,6 +146,12 @@ def test_one_fetches_things_and_stops() -> None:
         20.0,
     )
     assert person.told == [("take", "mug"), ("put", "table"), ("take", "mug"), ("put", "desk")]
+
+
+def test_one_opens_doors_in_turn() -> None:
+    person = NotedPerson()
+    live(running("open_by_hand", joints=["door", "drawer"], pause=(0.1, 0.2)), person, 6.0)
+    assert person.told[:3] == [("open", "door"), ("open", "drawer"), ("open", "door")]
 
 
 def test_one_visits_things_in_turn_and_looks_at_them() -> None:
