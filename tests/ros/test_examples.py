@@ -180,3 +180,11 @@ def test_an_arm_puts_a_mug_on_a_shelf(tmp_path: Path) -> None:
     out = run("20_robot_arm", "1", str(path))
     assert "1 of 1 mugs stand on the shelf" in out
     assert path.stat().st_size > 2_000
+
+
+def test_people_lie_sit_carry_and_move_as_recorded(tmp_path: Path) -> None:
+    """All four, with keypoints that are seen."""
+    out = run_for_a_picture("21_people", tmp_path)
+    seen = dict(re.findall(r"(\w+): (\d+) of 17 keypoints are seen", out))
+    assert set(seen) == {"anna", "ben", "cleo", "dan"}
+    assert sum(int(count) for count in seen.values()) > 30

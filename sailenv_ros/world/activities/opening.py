@@ -83,7 +83,7 @@ class Opening(SpotActivity):
         self._motion = running_motion(motion, 0.0)
         self._done_s = 0.0
         self._own = np.eye(4)
-        self._last: Posture | None = None
+        self._first: Posture | None = None
 
     @property
     def word(self) -> Activity:
@@ -98,8 +98,8 @@ class Opening(SpotActivity):
         if self._done_s == 0.0:
             self._own = invert(world_from_body)
             stands = walking_posture(self._actor.rig, moment, 0.0)
-            self._last = self._reached(stands, moment)
-        if self._last is None:
+            self._first = self._reached(stands, moment)
+        if self._first is None:
             return False
         moved_s = self._done_s - _REACH_S
         if 0.0 <= moved_s < _MOVE_S + 0.5 * STEP_S:
@@ -111,12 +111,10 @@ class Opening(SpotActivity):
         """Return the posture, in the frame of the body."""
         rig = self._actor.rig
         stands = walking_posture(rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg)
-        if self._last is None:
+        if self._first is None:
             return stands
-        if _REACH_S < self._done_s <= _REACH_S + _MOVE_S:
-            # Where the hand does not get any more, it stays where it was.
-            self._last = self._reached(stands, now.moment) or self._last
-        one, two = (JointTurns.of(rig, each) for each in (stands, self._last))
+        reaches = self._reached(stands, now.moment) or self._first
+        one, two = (JointTurns.of(rig, each) for each in (stands, reaches))
         return on_its_feet(rig, one.towards(two, self._share()).posture(rig), now.moment)
 
     def _share(self) -> float:
