@@ -22,10 +22,10 @@ class Fetch(PersonParameters):
     """Parameters of `fetch`."""
 
     objects: tuple[str, ...] = Field(
-        min_length=1, max_length=64, description="names of the things, one after another"
+        min_length=1, max_length=64, description="names of things, in turn"
     )
     to: tuple[str, ...] = Field(
-        min_length=1, max_length=64, description="names of furniture on which they are put in turn"
+        min_length=1, max_length=64, description="names of furniture, in turn"
     )
     times: int = Field(default=1, ge=1, le=100_000, description="how many things are carried")
 

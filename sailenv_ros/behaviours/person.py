@@ -44,7 +44,7 @@ ASK_AGAIN_S = 0.5
 
 
 class ClipPlay(NamedTuple):
-    """What is played of a clip of recorded motion.
+    """Order to play a clip of recorded motion.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class PersonParameters(BehaviourParameters):
     """Base of the parameters of behaviours of people."""
 
     pause: tuple[Seconds, Seconds] = Field(
-        default=(1.0, 4.0), description="shortest and longest time between two activities [s]"
+        default=(1.0, 4.0), description="shortest and longest pause [s]"
     )
 
     @property

@@ -42,7 +42,7 @@ class PlayClip(PersonParameters):
         "about the vertical, at the beginning [deg]; left out: any"
     )
     times: Annotated[int, Number(least=1, most=1000, whole=True)] = Field(
-        default=1, description="without a pause, each from where the last one ended"
+        default=1, description="each from where the last one ended"
     )
     speed: Annotated[float, Number(least=0.1, most=4.0)] = Field(
         default=1.0, description="1 as it was recorded"

@@ -44,7 +44,7 @@ _HALVINGS = 12
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Ground:
-    """What one lies upon, and the skin that lies upon it; in the body frame before the scale.
+    """Surface below a body, and the skin that lies upon it; body frame before the scale.
 
     Attributes
     ----------
@@ -216,7 +216,7 @@ def _raised(
 def _hand_on_belly(
     rig: Rig, ground: Ground, posture: Posture, level: Doubles, side: str, sign: float
 ) -> Posture:
-    """Return a posture with a hand on the belly, and the elbow upon what one lies on."""
+    """Return a posture whose hand lies upon the belly, and its elbow beside the body."""
     numbers = [rig.joint_of[f"{bone}.{side}"] for bone in _ARMS]
     turns, places = joint_frames(rig, posture)
     shoulder, hips = places[numbers[0]], places[rig.joint_of["spine05"]]

@@ -1,4 +1,4 @@
-"""Which joint of a recorded skeleton is what, however its makers call them.
+"""Roles of the joints of a recorded skeleton, however its makers call them.
 
 Files agree on little more than that a left foot has 'left' or 'l' in its name. Hands, feet and the
 head are sought by names; knees, hips, elbows and shoulders are the joints above them.

@@ -1,1 +1,1 @@
-"""What people do where their way ends: one activity a file."""
+"""Activities of people where their way ends: one a file."""

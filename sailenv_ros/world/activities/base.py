@@ -1,4 +1,4 @@
-"""An activity on the spot: where the feet stand for it, how it goes on, and the posture in it."""
+"""An activity on the spot: where the feet stand for it, how it continues, its postures."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Actor:
-    """Who does something.
+    """A person who does something.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Actor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Instant:
-    """What a posture depends on, whatever one does.
+    """State that all postures depend on.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Instant:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Held:
-    """What a person has in its hand.
+    """A thing in the hand of a person.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class SpotActivity(ABC):
 
     @abstractmethod
     def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
-        """Go on by a step; return False once it is over.
+        """Continue by a step; return False once it is over.
 
         Parameters
         ----------

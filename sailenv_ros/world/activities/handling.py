@@ -60,7 +60,7 @@ class _Handling(SpotActivity):
         """Nothing: it does not take long."""
 
     def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
-        """Go on by a step; return False once it is done, or cannot be done."""
+        """Continue by a step; return False once it is done, or cannot be done."""
         if self._done_s == 0.0:
             self._turn = world_from_body[:3, :3]
             own = invert(world_from_body)

@@ -103,7 +103,7 @@ class Lying(SpotActivity):
         return "lying" if self._done_s >= LIE_S else "lying down"
 
     def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
-        """Go on by a step; return False once the person stands again."""
+        """Continue by a step; return False once the person stands again."""
         if self._plan is None:
             self._plan = self._made(world_from_body)
         if self._rises and self._done_s <= 0.0:

@@ -94,7 +94,7 @@ class Opening(SpotActivity):
         """Nothing: it does not take long."""
 
     def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
-        """Go on by a step; return False once it is done, or cannot be done."""
+        """Continue by a step; return False once it is done, or cannot be done."""
         if self._done_s == 0.0:
             self._own = invert(world_from_body)
             stands = walking_posture(self._actor.rig, moment, 0.0)

@@ -70,7 +70,7 @@ class Playing(SpotActivity):
         return places[np.minimum(keep, len(places) - 1)]
 
     def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
-        """Go on by a step; return False once the person stands again."""
+        """Continue by a step; return False once the person stands again."""
         self._done_s += STEP_S * (self._speed if 0.0 <= self._done_s < self._length_s else 1.0)
         if self._done_s >= self._length_s and self._round + 1 < self._times and not self._stops:
             self._round += 1

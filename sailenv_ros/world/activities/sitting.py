@@ -57,7 +57,7 @@ class Sitting(SpotActivity):
         return "seated" if self._done_s >= SIT_S else "sitting down"
 
     def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
-        """Go on by a step; return False once the person stands again."""
+        """Continue by a step; return False once the person stands again."""
         self._done_s = min(self._done_s + (-STEP_S if self._rises else STEP_S), SIT_S)
         return self._done_s > 0.0
 
