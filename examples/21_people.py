@@ -50,6 +50,7 @@ with tempfile.TemporaryDirectory() as folder:
         frame = simulation.capture(["rgb", "depth", "category", "instance"])
         names = dict(zip(frame.objects.ids.tolist(), frame.objects.names, strict=True))
 
+assert frame.states is not None
 picture = np.ascontiguousarray(frame["rgb"][..., ::-1])
 for id_, colour in zip(frame.states.skeletons, COLOURS, strict=True):
     points = frame.keypoints(id_)
