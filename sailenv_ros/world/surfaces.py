@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.seats import heights_over
 
-__all__ = ["free_spots"]
+__all__ = ["away_from", "free_spots"]
 
 Doubles = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def free_spots(body: Body, others: Iterable[Body], around_m: float) -> list[Doub
     spots = spots[(spots[:, 2] > _LOWEST_M) & (spots[:, 2] < _HIGHEST_M)]
     for other in others:
         if other is not body and len(spots):
-            spots = spots[_away(other, spots, around_m + _APART_M)]
+            spots = spots[away_from(other, spots, around_m + _APART_M)]
     edge = np.abs((spots[:, :2] - matrix[:2, 3]) @ matrix[:2, :2])
     order = np.argsort(-np.max(edge / np.maximum(0.5 * (high - low)[:2], 1e-6), axis=1))
     chosen: list[Doubles] = []
@@ -69,8 +69,8 @@ def free_spots(body: Body, others: Iterable[Body], around_m: float) -> list[Doub
     return chosen
 
 
-def _away(other: Body, spots: Doubles, around_m: float) -> NDArray[np.bool_]:
-    """Return which of the spots another body does not reach."""
+def away_from(other: Body, spots: Doubles, around_m: float) -> NDArray[np.bool_]:
+    """Return (N,): which of (N, 3) spots a body is not upon, nor nearer to than a distance [m]."""
     bounds = other.placement.asset.model.bounds() * np.asarray(other.placement.scale)
     matrix = other.world_from_body()
     corners = np.array([[bounds[i, 0], bounds[j, 1], bounds[k, 2]]

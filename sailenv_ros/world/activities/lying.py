@@ -19,6 +19,7 @@ from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.lying import SINK_M, Ground, depths, lying_posture, tucked_posture
 from sailenv_ros.postures.skeleton import Posture, turn_about
 from sailenv_ros.postures.standing import breathing
+from sailenv_ros.types.labels import ROOM_PARTS
 from sailenv_ros.types.rig import Rig
 from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity
 from sailenv_ros.world.activities.sitting import HIGHEST, Sitting
@@ -26,6 +27,7 @@ from sailenv_ros.world.beds import Lane
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.seats import Seat
 from sailenv_ros.world.skin import contact_skin
+from sailenv_ros.world.surfaces import away_from
 
 __all__ = ["LIE_S", "Lying", "lanes_for", "ways_to_lie"]
 
@@ -50,6 +52,9 @@ _HEAD_TOP = 0.115
 
 _OVER_M, _TOES = 0.06, 0.05
 """How far feet may reach over an open end [m]; their length when stretched, over the height."""
+
+_SPACING_M, _BESIDE_LANE_M = 0.15, 0.15
+"""Between places at which a lane must be empty, and how far around them [m]."""
 
 _NECK_M = -0.04
 """From the end of the pillow to the neck [m]."""
@@ -196,9 +201,21 @@ def lanes_for(actor: Actor, crowd: Crowd) -> list[tuple[Lane, float]]:
         to_neck = min(to_neck, lane.length_m + feet - neck)
         place = lane.head - (to_neck + neck - hips) * lane.way
         free = crowd.is_free(actor.name, (float(place[0]), float(place[1])))
-        if to_neck >= tall - neck - 0.02 and free:
+        if to_neck >= tall - neck - 0.02 and free and _is_empty(lane, crowd):
             found.append((lane, to_neck + neck - hips))
     return found
+
+
+def _is_empty(lane: Lane, crowd: Crowd) -> bool:
+    """Return whether nothing lies on a lane."""
+    way = np.arange(0.1, lane.length_m, _SPACING_M)
+    places = lane.head - way[:, None] * lane.way
+    spots = np.column_stack([places, lane.heights(places)])
+    return all(
+        bool(away_from(other, spots, _BESIDE_LANE_M).all())
+        for other in crowd.bodies(without=lane.name)
+        if other.placement.asset.category not in ROOM_PARTS
+    )
 
 
 def ways_to_lie(actor: Actor, crowd: Crowd, name: str) -> list[Lying]:

@@ -121,6 +121,17 @@ def test_nobody_lies_where_there_is_no_room(piece: Asset) -> None:
     world.close()
 
 
+def test_nobody_lies_on_things() -> None:
+    book = placed("book", furniture("book", "book", [((0.2, 0.2, 0.05), (0.3, 0.0, 0.45))]), 0, 0)
+    world = world_of(person("anna", 0.4, 1.6), placed("bed", bed(), 0.0, 0.0, static=True), book)
+    anna = one(world, "anna")
+    world.step(1)
+    assert anna.walker.beds() == ()
+    world.despawn(world.find("book"))
+    assert anna.walker.beds() == ("bed",)
+    world.close()
+
+
 def test_two_have_room_on_a_wide_bed_and_a_third_has_not() -> None:
     world = world_of(
         person("anna", 0.2, 1.8),
