@@ -70,6 +70,19 @@ class PlacedObject:
     world_from_body: NDArray[np.float64]
     moves: bool = False
 
+    @property
+    def place(self) -> tuple[object, ...]:
+        """What tells objects and their places apart; it keeps the model, told by identity."""
+        return self.id, self.model, self.scale, self.world_from_body.tobytes()
+
+    @property
+    def ball(self) -> tuple[Doubles, float]:
+        """Centre [m], world frame, and radius [m] of a ball around it."""
+        bounds = self.model.bounds() * np.asarray(self.scale)
+        pose = self.world_from_body
+        radius = float(np.linalg.norm(np.ptp(bounds, axis=0)) / 2.0)
+        return pose[:3, :3] @ bounds.mean(axis=0) + pose[:3, 3], radius
+
 
 class SurfacePoints:
     """Points on models' surfaces, chosen once for each model and number."""
@@ -94,6 +107,11 @@ class ObjectLighting:
     changes : sequence of Change
         What was baked and stands elsewhere now.
     points : SurfacePoints
+
+    Attributes
+    ----------
+    world : RayWorld
+        All but what can move.
     """
 
     def __init__(self, scene: BakedScene, changes: Sequence[Change], points: SurfacePoints) -> None:
@@ -103,7 +121,9 @@ class ObjectLighting:
         self._area = [n for n, one in enumerate(self._lights) if one and one.type == "area"]
         probes = [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in layers]
         self._probes = np.ascontiguousarray(np.concatenate(probes, axis=-1))
-        self._world = ray_world(scene, changes, scene.sent, scene.sent, self._radiance_of_change)
+        self.world = ray_world(
+            scene, changes, scene.sent, scene.sent, self._radiance_of_change, settled=True
+        )
 
     def light_on(
         self, thing: PlacedObject, near: Sequence[PlacedObject], quality: Quality
@@ -117,7 +137,7 @@ class ObjectLighting:
             What else can move and stands near enough to count.
         quality : Quality
         """
-        world = self._world.with_more([self._placed(one) for one in near])
+        world = self.world.with_more([self.placed(one) for one in near])
         positions, normals = _placed_points(
             thing, *self._points.of(thing.model, quality.object_points)
         )
@@ -129,7 +149,8 @@ class ObjectLighting:
             direct=np.ascontiguousarray((fit @ direct).T, np.float32),
         )
 
-    def _placed(self, thing: PlacedObject) -> PlacedInstance:
+    def placed(self, thing: PlacedObject) -> PlacedInstance:
+        """Return an object as rays meet it."""
         pose = thing.world_from_body
         shape = self._scene.shape_of(thing.model, thing.scale, None)
         radiance = self._radiance(thing.model, thing.scale, pose)

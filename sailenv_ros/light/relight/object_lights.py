@@ -16,6 +16,7 @@ from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
 from sailenv_ros.light.relight.quality import FINE, QUICK
 from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot
 
@@ -56,18 +57,33 @@ def movable_objects(snapshot: WorldSnapshot) -> list[PlacedObject]:
 
 
 def with_object_light(snapshot: WorldSnapshot, scene: BakedScene, threads: int) -> WorldSnapshot:
-    """Return a snapshot of a scene that is as it was baked, with the light on all that can move."""
-    light = ObjectLights().update(snapshot, scene, (), threads=threads)
-    return replace(snapshot, object_light=light)
+    """Return a snapshot of a scene that is as it was baked, with the light on all that can move.
+
+    Its shadows are in the light of what was baked.
+    """
+    objects, contents = ObjectLights(), snapshot.contents
+    assert contents.baked is not None
+    light = objects.update(snapshot, scene, (), threads=threads)
+    shadows = ShownShadows(scene, objects.points)
+    rest = [thing for thing in objects.things if not thing.moves]
+    baked = shadows.on(contents.baked, rest, (), threads=threads)
+    return replace(snapshot, contents=replace(contents, baked=baked), object_light=light)
 
 
 class ObjectLights:
-    """The light on what can move in one scene."""
+    """The light on what can move in one scene.
+
+    Attributes
+    ----------
+    points : SurfacePoints
+    things : list of PlacedObject
+        Where objects were at the last update, to the steps that count.
+    """
 
     def __init__(self) -> None:
+        self.points, self.things = SurfacePoints(), list[PlacedObject]()
         self._of: tuple[object, ...] = ()
         self._seen: tuple[object, tuple[bytes, bytes]] = (None, (b"", b""))
-        self._points = SurfacePoints()
         self._lighting: ObjectLighting | None = None
         self._known: dict[int, tuple[tuple[object, ...], ObjectLight]] = {}
         self._light: Mapping[int, ObjectLight] = {}
@@ -98,9 +114,9 @@ class ObjectLights:
         if of == self._of and instances is self._seen[0] and seen == self._seen[1]:
             return self._light
         self._seen = instances, seen
-        things = [_steady(thing) for thing in movable_objects(snapshot)]
+        self.things = things = [_steady(thing) for thing in movable_objects(snapshot)]
         if self._lighting is None or of != self._of:
-            self._lighting = ObjectLighting(scene, changes, self._points)
+            self._lighting = ObjectLighting(scene, changes, self.points)
             self._of, self._known = of, {}
         chosen = _chosen(things)
         near = _near(things)
@@ -110,7 +126,7 @@ class ObjectLights:
             thing = things[place]
             around = [things[other] for other in near[place]]
             quality = QUICK if thing.moves else FINE
-            key = quality, _place_of(thing), *(_place_of(other) for other in around)
+            key = quality, thing.place, *(other.place for other in around)
             before = self._known.get(thing.id)
             if before is not None and before[0] == key:
                 known[thing.id] = before
@@ -147,20 +163,12 @@ def _steady(thing: PlacedObject) -> PlacedObject:
     return replace(thing, world_from_body=pose + 0.0)
 
 
-def _place_of(thing: PlacedObject) -> tuple[object, ...]:
-    return thing.id, thing.model, thing.scale, thing.world_from_body.tobytes()
-
-
 def _near(things: list[PlacedObject]) -> list[list[int]]:
     """Return which others stand near each."""
     if not things:
         return []
-    centres, radii = np.empty((len(things), 3)), np.empty(len(things))
-    for row, thing in enumerate(things):
-        bounds = thing.model.bounds() * np.asarray(thing.scale)
-        centres[row] = thing.world_from_body[:3, :3] @ bounds.mean(axis=0)
-        radii[row] = np.linalg.norm(np.ptp(bounds, axis=0)) / 2.0
-    centres += np.array([thing.world_from_body[:3, 3] for thing in things])
+    balls = [thing.ball for thing in things]
+    centres, radii = np.array([ball[0] for ball in balls]), np.array([ball[1] for ball in balls])
     apart = np.linalg.norm(centres[:, None] - centres, axis=2)
     close = apart < radii[:, None] + radii + NEAR_M
     np.fill_diagonal(close, False)

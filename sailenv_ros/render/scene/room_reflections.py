@@ -117,7 +117,7 @@ class RoomReflections:
         """
         contents = snapshot.contents
         assert contents.baked is not None
-        of = (contents.baked, contents.instance_ids[still].tobytes())
+        of = (contents.baked.of_still, contents.instance_ids[still].tobytes())
         if self._of is None or self._of[0] is not of[0] or self._of[1] != of[1]:
             self._shares, self._of = {}, of
             self.points.choose(snapshot)
@@ -171,7 +171,7 @@ class RoomReflections:
         """Return the share that is on disk, if it can be."""
         contents = snapshot.contents
         assert contents.baked is not None
-        if not self._drawn_by or not contents.baked.checksum:
+        if not self._drawn_by or not contents.baked.of_still.checksum:
             return self._seen(alone, look)
         sky = contents.environment.sky
         told = replace(contents.environment, sky=None, exposure=0.0)

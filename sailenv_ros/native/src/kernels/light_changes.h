@@ -19,10 +19,21 @@ static inline float scatter(uint32_t x) {
     return static_cast<float>(x >> 8) * (1.0f / 16777216.0f);
 }
 
-// What a ray meets first, before and after; true if that is not the same.
-static inline bool meet_both(const RayScene& s, const Ray& r, Hit& before, Hit& after) {
-    for (int64_t k = 0; k < s.changed_count; k++) {
-        const RayInstance& i = s.changed[k];
+// Things that change and may be seen from a point.
+struct SeenChanges {
+    static constexpr int64_t MOST = 64;
+    const RayInstance* instance[MOST];
+    int64_t count = 0;
+};
+
+// What a ray meets first, before and after; true if that is not the same. If too many changes are
+// `seen`, all count.
+static inline bool meet_both(const RayScene& s, const SeenChanges& seen, const Ray& r, Hit& before,
+                             Hit& after) {
+    const bool all = seen.count > SeenChanges::MOST;
+    const int64_t count = all ? s.changed_count : seen.count;
+    for (int64_t k = 0; k < count; k++) {
+        const RayInstance& i = all ? s.changed[k] : *seen.instance[k];
         if (!ray_passes_ball(i, r, ENDLESS)) continue;
         if (i.before) meet_instance(i, r, before);
         if (i.after) meet_instance(i, r, after);
@@ -65,9 +76,9 @@ static inline Stopped stopped(const RayScene& s, const Ray& r, float length, boo
     return {by_before != by_after && !rest, by_before || rest, by_after || rest};
 }
 
-// Whether anything that changes may come between a point and a light.
+// Whether anything that changes may come between a point, or one so far beside it, and a light.
 static inline bool comes_between(const RayScene& s, const RayLight& l, const float* p,
-                                 const float* n) {
+                                 const float* n, float beside = 0.0f) {
     const bool far = l.lamp.kind == LIGHT_DIRECTIONAL;
     float towards[3], square = 0.0f;
     for (int c = 0; c < 3; c++) {
@@ -75,11 +86,11 @@ static inline bool comes_between(const RayScene& s, const RayLight& l, const flo
         square += l.across[c] * l.across[c] + l.up[c] * l.up[c];
     }
     const float reach_of = 0.5f * std::sqrt(square) + (far ? 0.0f : l.radius);
-    if (dot(towards, n) < -reach_of) return false;
+    if (dot(towards, n) < -reach_of - beside) return false;
     const Ray r = ray_of(p, towards);
     const float length = far ? ENDLESS : 1.0f;
     for (int64_t k = 0; k < s.changed_count; k++) {
-        if (ray_passes_ball(s.changed[k], r, length, reach_of)) return true;
+        if (ray_passes_ball(s.changed[k], r, length, reach_of + beside)) return true;
     }
     return false;
 }

@@ -1,0 +1,93 @@
+"""Keeps the shadows of what can move while a scene runs. From baked light to what is shown.
+
+A shadow is a function of what stands where: of what rests, and of the furniture that has changed.
+What moves has none; the picture darkens its surroundings until it rests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
+from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
+from sailenv_ros.light.relight.object_shadows import ObjectShadows
+from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance, placed_instances
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.geometry import invert
+
+__all__ = ["ShownShadows"]
+
+NEAR_M = 0.25
+"""Furniture that is farther from an object's ball changes nothing of its shadow [m]."""
+
+
+class ShownShadows:
+    """The shadows in one scene.
+
+    Parameters
+    ----------
+    scene : BakedScene
+    points : SurfacePoints
+    """
+
+    def __init__(self, scene: BakedScene, points: SurfacePoints) -> None:
+        self._scene, self._points = scene, points
+        self._still = ObjectShadows(ObjectLighting(scene, (), points), moved_surfaces(scene, ()))
+        self._changed: tuple[tuple[object, ...], ObjectShadows] | None = None
+        self._shown: tuple[BakedLight, BakedLight] | None = None
+
+    def on(
+        self,
+        light: BakedLight,
+        things: Sequence[PlacedObject],
+        changes: Sequence[Change],
+        *,
+        threads: int,
+    ) -> BakedLight:
+        """Return light with the shadows of objects; the same object while nothing has changed.
+
+        Parameters
+        ----------
+        light : BakedLight
+            Of the scene with its changes.
+        things : sequence of PlacedObject
+            Those that rest.
+        changes : sequence of Change
+            Furniture that counts as standing elsewhere.
+        threads : int
+            The result does not depend on it.
+        """
+        shadows = self._still
+        moved = shadows.update({thing.id: (thing.place, thing) for thing in things}, threads)
+        key = tuple(change.key for change in changes)
+        if moved or (self._changed is not None and self._changed[0] != key):
+            self._changed, self._shown = None, None
+        if changes:
+            if self._changed is None:
+                self._changed = key, self._with_changes(changes, things)
+                self._shown = None
+            shadows = self._changed[1]
+        if self._shown is None or self._shown[0] is not light:
+            self._shown = light, shadows.on(light)
+        return self._shown[1]
+
+    def _with_changes(
+        self, changes: Sequence[Change], things: Sequence[PlacedObject]
+    ) -> ObjectShadows:
+        scene = self._scene
+        furniture = [part for change in changes for part in placed_instances(scene, change, None)]
+        near = [thing.id for thing in things if any(_is_near(thing, part) for part in furniture)]
+        lighting = ObjectLighting(scene, changes, self._points)
+        return self._still.with_changes(lighting, moved_surfaces(scene, changes), near)
+
+
+def _is_near(thing: PlacedObject, part: PlacedInstance) -> bool:
+    centre, radius = thing.ball
+    inverse = invert(part.pose)
+    own = inverse[:3, :3] @ centre + inverse[:3, 3]
+    tree = part.shape.tree
+    away = np.maximum(np.maximum(tree.low - own, own - tree.high), 0.0)
+    return float(np.linalg.norm(away)) < radius + NEAR_M
