@@ -30,7 +30,7 @@ __all__ = [
 Floats = NDArray[np.float32]
 
 _GATHER = Kernel("gather_change", "iaaa")
-_REACHED = Kernel("reached_points", "iaiaanniaa")
+_REACHED = Kernel("reached_points", "iaiaaaniaa")
 _SMOOTH = Kernel("smooth_change", "iaiiaaiaaa")
 _PROBES = Kernel("gather_probe_change", "iaiaiaiaa")
 _DELTA = Kernel("direct_light_delta", "iaaiaaaaaiaaaa")
@@ -224,9 +224,9 @@ def reached_points(
     scene: NDArray[np.void],
     positions: Floats,
     normals: Floats,
+    margins: Floats,
     lights: NDArray[np.void],
     *,
-    margin: float,
     least: float,
     threads: int,
 ) -> NDArray[np.uint8]:
@@ -234,9 +234,9 @@ def reached_points(
 
     Parameters
     ----------
-    lights : (L,) RAY_LIGHT
-    margin : float
+    margins : (N,) float32
         What is within this distance of a point, or of its way to a light, counts [m].
+    lights : (L,) RAY_LIGHT
     least : float
         Things that may take less of a point's view than this share do not.
 
@@ -248,10 +248,11 @@ def reached_points(
     count = len(positions)
     checked("positions", positions, np.float32, (None, 3))
     checked("normals", normals, np.float32, (count, 3))
+    checked("margins", margins, np.float32, (count,))
     checked("lights", lights, RAY_LIGHT, (None,))
     found = np.zeros(count, np.uint8)
     _REACHED(
-        threads, scene, count, positions, normals, margin, least, len(lights), lights, found
+        threads, scene, count, positions, normals, margins, least, len(lights), lights, found
     )  # fmt: skip
     return found
 

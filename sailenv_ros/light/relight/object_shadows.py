@@ -23,8 +23,7 @@ from sailenv_ros.light.relight.ray_world import RayWorld
 from sailenv_ros.light.relight.shadow_maps import (
     INSIDE,
     PointChanges,
-    brightened,
-    difference_of,
+    ShadowMaps,
 )
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
@@ -41,12 +40,16 @@ Floats = NDArray[np.float32]
 CHANGED, WHOLE = 1, 2
 """States of points: their light is another one, or is to be found anew."""
 
-LEAST = 0.01
+LEAST = 0.02
 """Objects that may take less of a patch's view than this share change nothing there."""
 
 NEAR = 11.0
 """Where what hides light is farther than so many times its texels lie from the middle of a patch,
 the patch is fine enough."""
+
+TOUCHING = 4.0
+"""Where it is nearer than so many times that, light changes so quickly that only many rays tell it
+without noise."""
 
 REACH = 2.5
 """How many times as far as on average they may lie."""
@@ -80,11 +83,10 @@ class ObjectShadows:
         self._patches = PointChanges.none(patches, columns)
         away = scene.positions - scene.patches.positions[scene.patches.of_texel]
         self._size = scene.patches.means(np.linalg.norm(away, axis=1))
-        self._margin = REACH * float(np.percentile(self._size, 99)) if patches else 0.0
         self._texels = np.zeros(0, np.intp)
         self._at_texels = PointChanges.none(0, columns)
         self._things: dict[int, tuple[object, PlacedObject]] = {}
-        self._difference: tuple[NDArray[np.intp], Floats] | None = None
+        self._maps = ShadowMaps(surfaces, len(self._lamps))
 
     @property
     def casters(self) -> frozenset[int]:
@@ -137,12 +139,9 @@ class ObjectShadows:
         """Return light of the same scene with the shadows in it."""
         if not self._things:
             return light
-        if self._difference is None:
-            self._difference = difference_of(
-                self._maps_of(self._surfaces.scene.baked), self._surfaces, self._patches,
-                self._texels, self._at_texels, len(self._lamps), self._threads,
-            )  # fmt: skip
-        after = brightened(self._maps_of(light), *self._difference)
+        after = self._maps.on(
+            light, self._maps_of(light), self._patches, self._texels, self._at_texels, self._threads
+        )
         bounced, direct = after[: len(light.layers)], after[len(light.layers) :]
         of_layer = dict(zip(self._records, direct, strict=True))
         layers = [
@@ -164,8 +163,8 @@ class ObjectShadows:
         """Return (P,) bool: the patches whose light objects may change."""
         found = reached_points(
             self._world_of(things).record, self._surfaces.patch_positions,
-            self._surfaces.patch_normals, _joined(self._records.values()),
-            margin=self._margin, least=LEAST, threads=self._threads,
+            self._surfaces.patch_normals, self._size * np.float32(REACH),
+            _joined(self._records.values()), least=LEAST, threads=self._threads,
         )  # fmt: skip
         return (found > 0) & (self._surfaces.wanted > 0)
 
@@ -180,18 +179,25 @@ class ObjectShadows:
         uneven = asked[self._is_uneven(asked, found)]
         # They say nothing of others.
         patches.state[uneven] = INSIDE
-        own = self._texels_of(uneven)
+        touching = found.nearness < TOUCHING * self._size[asked]
+        near, far = (
+            self._texels_of(np.intersect1d(uneven, asked[chosen]))
+            for chosen in (touching, ~touching)
+        )
         again = np.zeros(len(patches.state), bool)
         again[asked] = True
+        self._maps.forget(again)
         kept = ~again[surfaces.scene.patches.of_texel[self._texels]]
-        fresh = self._gathered(
-            world, surfaces.positions, surfaces.normals, own, FINE.texel_rays, len(patches.state)
-        )
-        texels = np.concatenate([self._texels[kept], own])
+        fresh = [
+            self._gathered(
+                world, surfaces.positions, surfaces.normals, own, rays, len(patches.state)
+            )
+            for own, rays in ((near, FINE.texel_rays), (far, FINE.rays))
+        ]
+        texels = np.concatenate([self._texels[kept], near, far])
         order = np.argsort(texels)
         self._texels = texels[order]
         self._at_texels = self._at_texels.replaced(kept, fresh, order)
-        self._difference = None
 
     def _is_uneven(self, asked: NDArray[np.intp], found: PointChanges) -> NDArray[np.bool_]:
         """Return where light changes within a patch."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from sailenv_ros.light.relight.moved_surfaces import MovedSurfaces
 from sailenv_ros.light.relight.quality import FINE
 from sailenv_ros.native.relight_kernels import smooth_change, spread_change
-from sailenv_ros.native.relight_types import PatchMap
+from sailenv_ros.native.relight_types import MappedTexels, PatchMap
 
-__all__ = ["INSIDE", "PointChanges", "brightened", "difference_of"]
+__all__ = ["INSIDE", "PointChanges", "ShadowMaps"]
 
 Floats = NDArray[np.float32]
 Maps = Sequence[NDArray[np.float16]]
@@ -24,6 +24,9 @@ INSIDE = 3
 
 MOST = 6e4
 """Largest value of a light map."""
+
+TILE = 4
+"""Texels to a side of a patch."""
 
 SMOOTHING, NARROW = 2, 0.4
 """Texels to each side that are averaged over at most, and by how much less far than patches as
@@ -52,102 +55,129 @@ class PointChanges(NamedTuple):
         self.state[at], self.change[at], self.nearness[at] = found
 
     def replaced(
-        self, kept: NDArray[np.bool_], found: PointChanges, order: NDArray[np.intp]
+        self, kept: NDArray[np.bool_], found: Sequence[PointChanges], order: NDArray[np.intp]
     ) -> PointChanges:
-        """Return those of the points that are kept and of others, in an order of both."""
+        """Return those of the points that are kept and of others, in an order of all."""
         return PointChanges(
-            np.concatenate([self.state[kept], found.state])[order],
-            np.concatenate([self.change[kept], found.change])[order],
-            np.concatenate([self.nearness[kept], found.nearness])[order],
+            np.concatenate([self.state[kept], *(one.state for one in found)])[order],
+            np.concatenate([self.change[kept], *(one.change for one in found)])[order],
+            np.concatenate([self.nearness[kept], *(one.nearness for one in found)])[order],
         )
 
 
-def difference_of(
-    maps: Maps,
-    surfaces: MovedSurfaces,
-    at_patches: PointChanges,
-    texels: NDArray[np.intp],
-    at_texels: PointChanges,
-    sharp: int,
-    threads: int,
-) -> tuple[NDArray[np.intp], Floats]:
-    """Spread what was found over the texels of maps.
+class ShadowMaps:
+    """Light maps with shadows in them; what has not changed is kept from one time to the next.
 
     Parameters
     ----------
-    maps : sequence of (side, side, 3) or (side, side) float16
-        C channels in all.
     surfaces : MovedSurfaces
-    at_patches : PointChanges
-        Of all patches; where texels know better they are inside.
-    texels : (K,) intp
-        Those of which something was found.
-    at_texels : PointChanges
     sharp : int
         How many of the last channels have edges that are not smoothed.
-    threads : int
-
-    Returns
-    -------
-    places : (M,) intp
-        Of texels in the map.
-    difference : (M, C) float32
     """
-    after = [one.copy() for one in maps]
-    patches = surfaces.patches()
-    state, change = _smooth(patches, at_patches, FINE.smoothing, 4, threads)
-    spread_change(surfaces.texels(), patches, state, change, after, threads=threads)
-    if len(texels):
-        _put_texels(maps, after, surfaces, texels, at_texels, sharp, threads)
-    pairs = [(_flat(old), _flat(new)) for old, new in zip(maps, after, strict=True)]
-    changed = np.zeros(len(pairs[0][0]), bool)
-    for old, new in pairs:
-        changed |= (old != new).any(axis=1)
-    places = np.flatnonzero(changed)
-    return places, np.concatenate(
-        [new[places].astype(np.float32) - old[places] for old, new in pairs], axis=1
-    )
+
+    def __init__(self, surfaces: MovedSurfaces, sharp: int) -> None:
+        self._surfaces, self._sharp = surfaces, sharp
+        self._known: tuple[object, Maps] | None = None
+        self._forgotten = np.zeros(len(surfaces.wanted), bool)
+
+    def forget(self, patches: NDArray[np.bool_]) -> None:
+        """Have what was found at (P,) patches written again."""
+        self._forgotten |= patches
+
+    def on(
+        self,
+        light: object,
+        maps: Maps,
+        at_patches: PointChanges,
+        texels: NDArray[np.intp],
+        at_texels: PointChanges,
+        threads: int,
+    ) -> Maps:
+        """Return maps of a light with what was found in them.
+
+        Parameters
+        ----------
+        light : object
+            Tells the lights apart.
+        maps : sequence of (side, side, 3) or (side, side) float16
+            C channels in all.
+        at_patches : PointChanges
+            Of all patches; where texels know better they are inside.
+        texels : (K,) intp
+            Those of which something was found.
+        at_texels : PointChanges
+        threads : int
+        """
+        surfaces, scene = self._surfaces, self._surfaces.scene
+        kept = self._known[1] if self._known is not None and self._known[0] is light else None
+        after = [one.copy() for one in (maps if kept is None else kept)]
+        again = np.ones(len(scene.places), bool) if kept is None else self._written_again()
+        own = np.flatnonzero(again)
+        if kept is not None:
+            for old, new in zip(maps, after, strict=True):
+                _flat(new)[scene.places[own]] = _flat(old)[scene.places[own]]
+        patches = surfaces.patches()
+        state, change = _smooth(patches, at_patches, FINE.smoothing, 4, threads)
+        mapped = MappedTexels(
+            scene.places[own], surfaces.positions[own], surfaces.normals[own], scene.owners[own]
+        )
+        spread_change(mapped, patches, state, change, after, threads=threads)
+        if len(texels):
+            self._put_texels(maps, after, texels, at_texels, again[texels], threads)
+        self._known = light, after
+        self._forgotten[:] = False
+        return after
+
+    def _written_again(self) -> NDArray[np.bool_]:
+        """Return (N,) bool: the texels into which anything reaches from patches forgotten."""
+        scene = self._surfaces.scene
+        tiles = np.zeros((scene.side // TILE + 1, scene.side // TILE + 1), bool)
+        columns, rows = scene.patches.places[self._forgotten].astype(np.intp).T
+        tiles[rows // TILE, columns // TILE] = True
+        tiles = _widened(_widened(tiles, FINE.smoothing + 1).T, FINE.smoothing + 1).T
+        rows, columns = np.divmod(scene.places, scene.side)
+        found: NDArray[np.bool_] = tiles[rows // TILE, columns // TILE]
+        return found
+
+    def _put_texels(
+        self,
+        before: Maps,
+        after: Maps,
+        texels: NDArray[np.intp],
+        found: PointChanges,
+        wanted: NDArray[np.bool_],
+        threads: int,
+    ) -> None:
+        """Write what was found at texels over what patches say of them, where it is wanted."""
+        surfaces, scene = self._surfaces, self._surfaces.scene
+        places = scene.places[texels]
+        of_map = np.full((scene.side, scene.side), -1, np.int32)
+        of_map.reshape(-1)[places] = np.arange(len(places), dtype=np.int32)
+        rows, columns = np.divmod(places, scene.side)
+        own = PatchMap(
+            of_map, np.stack([columns, rows], axis=1).astype(np.float32),
+            surfaces.positions[texels], surfaces.normals[texels], scene.owners[texels],
+        )  # fmt: skip
+        narrow = found._replace(nearness=found.nearness * np.float32(NARROW))
+        state, change = _smooth(own, narrow, SMOOTHING, 1, threads)
+        soft = change.shape[1] - self._sharp
+        change[:, soft:] = found.change[:, soft:]
+        known = _filled(of_map, rows, columns, state, change) & wanted
+        at, column = places[known], 0
+        for old, new in zip(before, after, strict=True):
+            depth = _flat(old).shape[1]
+            lit = _flat(old)[at] + change[known, column : column + depth]
+            _flat(new)[at] = np.clip(lit, 0.0, MOST)
+            column += depth
 
 
-def brightened(
-    maps: Maps, places: NDArray[np.intp], difference: Floats
-) -> list[NDArray[np.float16]]:
-    """Return copies of maps to which a difference is added, as far as nothing gets below 0."""
-    after = [one.copy() for one in maps]
-    _add(maps, after, places, difference)
-    return after
-
-
-def _add(before: Maps, after: Maps, places: NDArray[np.integer], change: Floats) -> None:
-    for old, new, own in _columns(before, after, change):
-        new[places] = np.clip(old[places] + own, 0.0, MOST)
-
-
-def _put_texels(
-    before: Maps,
-    after: Maps,
-    surfaces: MovedSurfaces,
-    texels: NDArray[np.intp],
-    found: PointChanges,
-    sharp: int,
-    threads: int,
-) -> None:
-    """Write what was found at texels over what patches say of them."""
-    scene = surfaces.scene
-    places = scene.places[texels]
-    of_map = np.full((scene.side, scene.side), -1, np.int32)
-    of_map.reshape(-1)[places] = np.arange(len(places), dtype=np.int32)
-    rows, columns = np.divmod(places, scene.side)
-    own = PatchMap(
-        of_map, np.stack([columns, rows], axis=1).astype(np.float32),
-        surfaces.positions[texels], surfaces.normals[texels], scene.owners[texels],
-    )  # fmt: skip
-    narrow = found._replace(nearness=found.nearness * np.float32(NARROW))
-    state, change = _smooth(own, narrow, SMOOTHING, 1, threads)
-    soft = change.shape[1] - sharp
-    change[:, soft:] = found.change[:, soft:]
-    known = _filled(of_map, rows, columns, state, change)
-    _add(before, after, places[known], change[known])
+def _widened(tiles: NDArray[np.bool_], by: int) -> NDArray[np.bool_]:
+    """Return tiles with so many rows more above and below."""
+    wide = tiles.copy()
+    for step in range(1, by + 1):
+        wide[step:] |= tiles[:-step]
+        wide[:-step] |= tiles[step:]
+    return wide
 
 
 def _smooth(
@@ -161,17 +191,6 @@ def _smooth(
 def _flat(layer: NDArray[np.float16]) -> NDArray[np.float16]:
     """Return (texels, channels) of a map."""
     return layer.reshape(layer.shape[0] * layer.shape[1], -1)
-
-
-def _columns(
-    before: Maps, after: Maps, values: Floats
-) -> Iterator[tuple[NDArray[np.float16], NDArray[np.float16], Floats]]:
-    """Return maps, flat, and the columns of values that belong to each."""
-    column = 0
-    for old, new in zip(before, after, strict=True):
-        depth = _flat(old).shape[1]
-        yield _flat(old), _flat(new), values[:, column : column + depth]
-        column += depth
 
 
 def _filled(

@@ -76,9 +76,10 @@ static inline Stopped stopped(const RayScene& s, const Ray& r, float length, boo
     return {by_before != by_after && !rest, by_before || rest, by_after || rest};
 }
 
-// Whether anything that changes may come between a point, or one so far beside it, and a light.
+// Whether anything that changes may come between a point, or one so far beside it, and a light, and
+// take more than a share of its light.
 static inline bool comes_between(const RayScene& s, const RayLight& l, const float* p,
-                                 const float* n, float beside = 0.0f) {
+                                 const float* n, float beside = 0.0f, float least = 0.0f) {
     const bool far = l.lamp.kind == LIGHT_DIRECTIONAL;
     float towards[3], square = 0.0f;
     for (int c = 0; c < 3; c++) {
@@ -88,9 +89,19 @@ static inline bool comes_between(const RayScene& s, const RayLight& l, const flo
     const float reach_of = 0.5f * std::sqrt(square) + (far ? 0.0f : l.radius);
     if (dot(towards, n) < -reach_of - beside) return false;
     const Ray r = ray_of(p, towards);
-    const float length = far ? ENDLESS : 1.0f;
+    const float way = std::sqrt(std::max(dot(towards, towards), 1e-12f));
     for (int64_t k = 0; k < s.changed_count; k++) {
-        if (ray_passes_ball(s.changed[k], r, length, reach_of + beside)) return true;
+        const float* ball = s.changed[k].sphere;
+        float margin = beside + (far ? reach_of : 0.0f);
+        if (!far) {
+            // The rays to all of the light are a cone.
+            const float to[3] = {ball[0] - p[0], ball[1] - p[1], ball[2] - p[2]};
+            const float along = (dot(to, towards) / way + 1.2f * ball[3] + beside) / way;
+            margin += reach_of * std::min(std::max(along, 0.0f), 1.0f);
+            const float seen = ball[3] * way, of_light = reach_of * reach_of * dot(to, to);
+            if (seen * seen < least * of_light) continue;
+        }
+        if (ray_passes_ball(s.changed[k], r, far ? ENDLESS : 1.0f, margin)) return true;
     }
     return false;
 }

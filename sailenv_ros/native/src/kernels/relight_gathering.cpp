@@ -14,6 +14,9 @@ namespace {
 
 constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 
+// Share of a light that something must be able to hide.
+constexpr float LEAST_OF_LIGHT = 0.03f;
+
 // A point that something which changes covers: it takes so much of the view, so near.
 constexpr double COVERED = 0.95;
 constexpr float COVERED_M = 0.015f;
@@ -204,23 +207,21 @@ SAILENV_KERNEL(gather_change)
 
 // Which points may get other light by what changes: `found` becomes 1 where it may take a share of
 // the view of more than `least`, else 2 where it may come between the point and one of the lights,
-// else 0. What is within `margin` of either counts.
+// else 0. What is within the point's margin of either counts.
 SAILENV_KERNEL(reached_points)
 (int64_t threads, const sailenv::RayScene* scene, int64_t count, const float* positions,
- const float* normals, double margin, double least, int64_t light_count,
+ const float* normals, const float* margins, double least, int64_t light_count,
  const sailenv::RayLight* lights, uint8_t* found) {
     using namespace sailenv;
     const RayScene& s = *scene;
-    if (count < 0 || light_count < 0 || !(margin >= 0.0) || !sound(s)) {
-        return STATUS_INVALID_ARGUMENT;
-    }
+    if (count < 0 || light_count < 0 || !sound(s)) return STATUS_INVALID_ARGUMENT;
     parallel_for(threads, count, 1024, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t k = first; k < last; k++) {
             const float *p = positions + 3 * k, *n = normals + 3 * k;
-            const float beyond = static_cast<float>(margin);
+            const float beyond = margins[k];
             found[k] = reach(s, p, n, beyond) > static_cast<float>(least) ? 1 : 0;
             for (int64_t l = 0; l < light_count && found[k] == 0; l++) {
-                if (comes_between(s, lights[l], p, n, beyond)) found[k] = 2;
+                if (comes_between(s, lights[l], p, n, beyond, LEAST_OF_LIGHT)) found[k] = 2;
             }
         }
     });
