@@ -51,9 +51,6 @@ TOUCHING = 4.0
 """Where it is nearer than so many times that, light changes so quickly that only many rays tell it
 without noise."""
 
-REACH = 2.5
-"""How many times as far as on average they may lie."""
-
 LEAST_DIRECT = 0.02
 """Share of what lamps give a patch below which their shadows have no edges that are seen."""
 
@@ -82,7 +79,9 @@ class ObjectShadows:
         patches = len(scene.patches.size)
         self._patches = PointChanges.none(patches, columns)
         away = scene.positions - scene.patches.positions[scene.patches.of_texel]
-        self._size = scene.patches.means(np.linalg.norm(away, axis=1))
+        far = np.linalg.norm(away, axis=1)
+        self._size, self._margin = scene.patches.means(far), np.zeros(patches, np.float32)
+        np.maximum.at(self._margin, scene.patches.of_texel, far)
         self._texels = np.zeros(0, np.intp)
         self._at_texels = PointChanges.none(0, columns)
         self._things: dict[int, tuple[object, PlacedObject]] = {}
@@ -163,7 +162,7 @@ class ObjectShadows:
         """Return (P,) bool: the patches whose light objects may change."""
         found = reached_points(
             self._world_of(things).record, self._surfaces.patch_positions,
-            self._surfaces.patch_normals, self._size * np.float32(REACH),
+            self._surfaces.patch_normals, self._margin,
             _joined(self._records.values()), least=LEAST, threads=self._threads,
         )  # fmt: skip
         return (found > 0) & (self._surfaces.wanted > 0)
@@ -171,7 +170,14 @@ class ObjectShadows:
     def _find(self, asked: NDArray[np.intp]) -> None:
         """Find what changes at patches, and at the texels of those where that is not enough."""
         surfaces, patches = self._surfaces, self._patches
-        world = self._world_of([thing for _, (_, thing) in sorted(self._things.items())])
+        every = [thing for _, (_, thing) in sorted(self._things.items())]
+        again = np.zeros(len(patches.state), bool)
+        again[asked] = True
+        self._maps.forget(again)
+        kept = ~again[surfaces.scene.patches.of_texel[self._texels]]
+        patches.put(asked, PointChanges.none(len(asked), patches.change.shape[1]))
+        asked = asked[self._may_change(every)[asked]]
+        world = self._world_of(every)
         found = self._gathered(
             world, surfaces.patch_positions, surfaces.patch_normals, asked, FINE.rays, 0
         )
@@ -184,10 +190,6 @@ class ObjectShadows:
             self._texels_of(np.intersect1d(uneven, asked[chosen]))
             for chosen in (touching, ~touching)
         )
-        again = np.zeros(len(patches.state), bool)
-        again[asked] = True
-        self._maps.forget(again)
-        kept = ~again[surfaces.scene.patches.of_texel[self._texels]]
         fresh = [
             self._gathered(
                 world, surfaces.positions, surfaces.normals, own, rays, len(patches.state)

@@ -215,12 +215,12 @@ class Relighter:
         """Return light with the shadows of what rests; in real time those found last."""
         shadows = self._shadows
         assert shadows is not None
+        if self._light is not None and not self._light.refined:
+            # Until then the picture darkens what is near.
+            return light
         rest = [thing for thing in self._objects.things if not thing.moves]
         if lockstep:
-            # Furniture that has just moved counts when its own light is refined.
-            refined = self._light is None or self._light.refined
-            changes = self._changes if refined else []
-            return shadows.on(light, rest, changes, threads=thread_count())
+            return shadows.on(light, rest, self._changes, threads=thread_count())
         if self._shading is not None and self._shading[1].done():
             self._shaded = self._shading[0], self._shading[1].result()
             self._shading = None

@@ -25,6 +25,9 @@ INSIDE = 3
 MOST = 6e4
 """Largest value of a light map."""
 
+FAR_M = 2.0
+"""What is farther is as good as endless, to the kernels too [m]."""
+
 TILE = 4
 """Texels to a side of a patch."""
 
@@ -44,7 +47,7 @@ class PointChanges(NamedTuple):
     def none(cls, points: int, channels: int) -> PointChanges:
         """Return those of points at which nothing changes."""
         nothing = np.zeros((points, channels), np.float32)
-        return cls(np.zeros(points, np.uint8), nothing, np.ones(points, np.float32))
+        return cls(np.zeros(points, np.uint8), nothing, np.full(points, FAR_M, np.float32))
 
     def copy(self) -> PointChanges:
         """Return a copy that may be written to."""

@@ -14,9 +14,6 @@ namespace {
 
 constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 
-// Share of a light that something must be able to hide.
-constexpr float LEAST_OF_LIGHT = 0.03f;
-
 // A point that something which changes covers: it takes so much of the view, so near.
 constexpr double COVERED = 0.95;
 constexpr float COVERED_M = 0.015f;
@@ -75,9 +72,7 @@ float reach(const RayScene& s, const float* p, const float* n, float beside) {
 SeenChanges seen_changes(const RayScene& s, const float* p, const float* n, float least) {
     SeenChanges seen;
     for (int64_t k = 0; k < s.changed_count; k++) {
-        if (!(reach_of(s.changed[k], p, n, 0.0f) > least)) continue;
-        if (seen.count < SeenChanges::MOST) seen.instance[seen.count] = &s.changed[k];
-        seen.count++;
+        if (reach_of(s.changed[k], p, n, 0.0f) > least) seen.add(s.changed[k]);
     }
     return seen;
 }
@@ -179,9 +174,10 @@ void gather_patch(const RayScene& s, const PatchQuery& q, int64_t k, const Patch
     if (own.state == PATCH_INSIDE) return;
     const bool whole = own.state == PATCH_WHOLE;
     for (int64_t l = 0; l < q.light_count; l++) {
-        if (!whole && !comes_between(s, q.lights[l], p, n)) continue;
+        const SeenChanges way = between(s, q.lights[l], p, n);
+        if (!whole && way.count == 0) continue;
         const DirectLightDelta delta =
-            direct_light_delta(s, q.lights[l], p, n, q.shot_pattern, q.shots, number, whole);
+            direct_light_delta(s, way, q.lights[l], p, n, q.shot_pattern, q.shots, number, whole);
         direct[l] = whole ? delta.total : delta.change;
         if (delta.touched && result.found[k] == PATCH_AS_IT_WAS) result.found[k] = PATCH_CHANGED;
     }
@@ -221,7 +217,7 @@ SAILENV_KERNEL(reached_points)
             const float beyond = margins[k];
             found[k] = reach(s, p, n, beyond) > static_cast<float>(least) ? 1 : 0;
             for (int64_t l = 0; l < light_count && found[k] == 0; l++) {
-                if (comes_between(s, lights[l], p, n, beyond, LEAST_OF_LIGHT)) found[k] = 2;
+                if (between(s, lights[l], p, n, beyond).count > 0) found[k] = 2;
             }
         }
     });
@@ -290,9 +286,10 @@ SAILENV_KERNEL(direct_light_delta)
             const int32_t own = patch[k];
             const bool whole = own >= 0 && own < s.patch_count && wanted[own] == PATCH_WHOLE;
             if (own >= 0 && own < s.patch_count && wanted[own] == PATCH_INSIDE) continue;
-            if (!whole && !comes_between(s, l, p, n)) continue;
+            const SeenChanges in_the_way = between(s, l, p, n);
+            if (!whole && in_the_way.count == 0) continue;
             const DirectLightDelta way =
-                direct_light_delta(s, l, p, n, pattern, rays, numbers[k], whole);
+                direct_light_delta(s, in_the_way, l, p, n, pattern, rays, numbers[k], whole);
             if (!whole && !way.touched) continue;
             state[k] = whole ? PATCH_WHOLE : PATCH_CHANGED;
             direct[k] = whole ? way.total : way.change;

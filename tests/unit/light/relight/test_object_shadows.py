@@ -109,7 +109,9 @@ def test_beside_a_box_it_is_darker_than_farther_away() -> None:
 
 def test_shadows_are_a_function_of_what_stands_where() -> None:
     """Threads, and what was shown before, change no bit; without a change nothing is made."""
-    snapshot = room((BOX, ON_THE_FLOOR), (BOX, Pose((0.4, 0.3, 0.101))), lights=(LAMP,))
+    panel = Light(name="panel", type="area", position_m=(0.5, 0.5, 2.0), direction=(0.0, 0.0, -1.0))
+    boxes = [(BOX, Pose((x, y, 0.101))) for x, y in ((0.0, 0.0), (0.4, 0.3), (-0.6, 0.6))]
+    snapshot = room(*boxes, environment=WHITE_SKY, lights=(LAMP, panel))
     scene = scene_of(snapshot)
     away = movable_objects(moved(snapshot, 1, -0.5))
     here = movable_objects(snapshot)
