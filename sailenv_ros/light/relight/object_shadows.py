@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,6 +111,32 @@ class ObjectShadows:
         self._things, self._threads = dict(things), threads
         self._find(np.flatnonzero(self._may_change([*left, *taken])))
         return True
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return what was found, for `take`."""
+        found = np.flatnonzero(self._patches.state).astype(np.int32)
+        patches = self._patches.at(found)
+        return {
+            "patches": found,
+            "texels": self._texels,
+            **{f"patch_{name}": array for name, array in patches._asdict().items()},
+            **{f"texel_{name}": array for name, array in self._at_texels._asdict().items()},
+        }
+
+    def take(
+        self,
+        things: Mapping[int, tuple[object, PlacedObject]],
+        arrays: Mapping[str, NDArray[Any]],
+        threads: int,
+    ) -> None:
+        """Take what was found of objects before, where none were known."""
+        self._things, self._threads = dict(things), threads
+        names = PointChanges._fields
+        self._patches.put(
+            arrays["patches"], PointChanges(*(arrays[f"patch_{name}"] for name in names))
+        )
+        self._texels = arrays["texels"]
+        self._at_texels = PointChanges(*(arrays[f"texel_{name}"] for name in names))
 
     def with_changes(
         self, lighting: ObjectLighting, surfaces: MovedSurfaces, near: Collection[int]

@@ -53,7 +53,11 @@ class PointChanges(NamedTuple):
         """Return a copy that may be written to."""
         return PointChanges(self.state.copy(), self.change.copy(), self.nearness.copy())
 
-    def put(self, at: NDArray[np.intp], found: PointChanges) -> None:
+    def at(self, places: NDArray[np.integer]) -> PointChanges:
+        """Return those of some points."""
+        return PointChanges(self.state[places], self.change[places], self.nearness[places])
+
+    def put(self, at: NDArray[np.integer], found: PointChanges) -> None:
         """Write what was found over what is known of some points."""
         self.state[at], self.change[at], self.nearness[at] = found
 

@@ -6,15 +6,20 @@ What moves has none; the picture darkens its surroundings until it rests.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.bake.fingerprint import model_digest
+from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
 from sailenv_ros.light.relight.object_shadows import ObjectShadows
 from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance, placed_instances
+from sailenv_ros.native.library import native_library
+from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import invert
 
@@ -61,7 +66,7 @@ class ShownShadows:
             The result does not depend on it.
         """
         shadows = self._still
-        moved = shadows.update({thing.id: (thing.place, thing) for thing in things}, threads)
+        moved = self._follow({thing.id: (thing.place, thing) for thing in things}, threads)
         key = tuple(change.key for change in changes)
         if moved or (self._changed is not None and self._changed[0] != key):
             self._changed, self._shown = None, None
@@ -73,6 +78,30 @@ class ShownShadows:
         if self._shown is None or self._shown[0] is not light:
             self._shown = light, shadows.on(light)
         return self._shown[1]
+
+    def _follow(self, things: Mapping[int, tuple[object, PlacedObject]], threads: int) -> bool:
+        """Find shadows where things are; the first ones are kept on disk with the room's light."""
+        still, checksum = self._still, self._scene.baked.checksum
+        if still.casters or not things or not checksum:
+            return still.update(things, threads)
+
+        def find() -> Mapping[str, NDArray[Any]]:
+            still.update(things, threads)
+            return still.arrays()
+
+        told = [
+            (
+                *(thing.id, thing.scale, thing.world_from_body.tobytes()),
+                *(model_digest(thing.model), albedo_of_model(thing.model).tolist()),
+            )
+            for _, thing in things.values()
+        ]
+        code = code_digest("light/bake", "light/relight", "native", "rays", "types")
+        key = checksum, native_library().digest, *self._scene.drawn, *told
+        found = cached_arrays("shadows", key, find, code=code)
+        if not still.casters:
+            still.take(things, found, threads)
+        return True
 
     def _with_changes(
         self, changes: Sequence[Change], things: Sequence[PlacedObject]

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.light.relight.object_light import SurfacePoints
@@ -124,6 +126,24 @@ def test_shadows_are_a_function_of_what_stands_where() -> None:
     assert_same(first, back)
     assert_same(second, fresh.on(scene.baked, away, (), threads=4))
     assert shadows.on(scene.baked, [], (), threads=1) is scene.baked
+
+
+def test_shadows_that_were_kept_are_those_that_are_found(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Of a bake that lies on disk the first ones do, and are no other after a move either."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    snapshot = room((BOX, ON_THE_FLOOR), (BOX, Pose((0.4, 0.3, 0.101))), environment=WHITE_SKY)
+    scene = scene_of(snapshot)
+    scene.baked = replace(scene.baked, checksum="of its file")
+    here, away = (movable_objects(one) for one in (snapshot, moved(snapshot, 1, -0.5)))
+    found = [
+        [shadows.on(scene.baked, things, (), threads=1) for things in (here, away)]
+        for shadows in (ShownShadows(scene, SurfacePoints()) for _ in range(2))
+    ]
+    assert len(list((tmp_path / "arrays").glob("shadows-*"))) == 1
+    for one, two in zip(*found, strict=True):
+        assert_same(one, two)
 
 
 def assert_same(one: BakedLight, two: BakedLight) -> None:
