@@ -20,7 +20,7 @@ from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.light.relight.quality import Quality
 from sailenv_ros.light.relight.ray_world import RayWorld, ray_world
-from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance
+from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance, placed_instances
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
     direct_light_delta,
@@ -29,9 +29,10 @@ from sailenv_ros.native.relight_kernels import (
 )
 from sailenv_ros.rays.model_triangles import triangles_of
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
+from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Model
 
-__all__ = ["ObjectLighting", "PlacedObject", "SurfacePoints"]
+__all__ = ["ObjectLighting", "PlacedObject", "SurfacePoints", "near_changes"]
 
 Floats = NDArray[np.float32]
 Doubles = NDArray[np.float64]
@@ -199,6 +200,25 @@ class ObjectLighting:
             direct[:, number] = np.where(state > 0, value, 0.0)
         weights = np.clip(nearness.astype(np.float64) / HIDDEN_M, LEAST_WEIGHT, 1.0)
         return bounced.astype(np.float64), direct, np.where(found == INSIDE, 1e-4, weights)
+
+
+def near_changes(
+    scene: BakedScene, things: Sequence[PlacedObject], changes: Sequence[Change], within_m: float
+) -> frozenset[int]:
+    """Return the ids of objects near furniture that has changed, where it stood or stands."""
+    furniture = [part for change in changes for part in placed_instances(scene, change, None)]
+    return frozenset(
+        thing.id for thing in things if any(_is_near(thing, part, within_m) for part in furniture)
+    )
+
+
+def _is_near(thing: PlacedObject, part: PlacedInstance, within_m: float) -> bool:
+    centre, radius = thing.ball
+    inverse = invert(part.pose)
+    own = inverse[:3, :3] @ centre + inverse[:3, 3]
+    tree = part.shape.tree
+    away = np.maximum(np.maximum(tree.low - own, own - tree.high), 0.0)
+    return float(np.linalg.norm(away)) < radius + within_m
 
 
 def _placed_points(

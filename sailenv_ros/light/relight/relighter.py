@@ -191,7 +191,8 @@ class Relighter:
         if (unprepared and not lockstep) or not any(map(can_be_lit, snapshot.contents.instances)):
             return {}
         scene, threads = self._prepared(), thread_count()
-        return self._objects.update(snapshot, scene, self._changes, threads=threads)
+        rough = self._light is not None and not self._light.refined
+        return self._objects.update(snapshot, scene, self._changes, rough=rough, threads=threads)
 
     def _show(self, contents: SceneContents, light: BakedLight) -> None:
         """Have contents of the world shown in a light; the same object while it is the same."""

@@ -9,19 +9,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.fingerprint import model_digest
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
-from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
+from sailenv_ros.light.relight.object_light import (
+    ObjectLighting,
+    PlacedObject,
+    SurfacePoints,
+    near_changes,
+)
 from sailenv_ros.light.relight.object_shadows import ObjectShadows
-from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance, placed_instances
+from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.library import native_library
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.baked_light import BakedLight
-from sailenv_ros.types.geometry import invert
 
 __all__ = ["ShownShadows"]
 
@@ -107,16 +110,6 @@ class ShownShadows:
         self, changes: Sequence[Change], things: Sequence[PlacedObject]
     ) -> ObjectShadows:
         scene = self._scene
-        furniture = [part for change in changes for part in placed_instances(scene, change, None)]
-        near = [thing.id for thing in things if any(_is_near(thing, part) for part in furniture)]
+        near = near_changes(scene, things, changes, NEAR_M)
         lighting = ObjectLighting(scene, changes, self._points)
         return self._still.with_changes(lighting, moved_surfaces(scene, changes), near)
-
-
-def _is_near(thing: PlacedObject, part: PlacedInstance) -> bool:
-    centre, radius = thing.ball
-    inverse = invert(part.pose)
-    own = inverse[:3, :3] @ centre + inverse[:3, 3]
-    tree = part.shape.tree
-    away = np.maximum(np.maximum(tree.low - own, own - tree.high), 0.0)
-    return float(np.linalg.norm(away)) < radius + NEAR_M
