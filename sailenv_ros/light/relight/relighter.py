@@ -144,7 +144,7 @@ class Relighter:
         assert contents.baked is not None
         known = self._contents is not None and self._contents[0] is contents
         if wanted or not known:
-            shown = self._without_shadows(contents.baked)
+            shown = self._without_shadows(contents.baked, lockstep=lockstep)
             if wanted and self._object_light:
                 shown = self._with_shadows(shown, lockstep=lockstep)
             self._show(contents, shown)
@@ -202,14 +202,17 @@ class Relighter:
             lit = contents if light is contents.baked else replace(contents, baked=light)
             self._contents = contents, lit
 
-    def _without_shadows(self, baked: BakedLight) -> BakedLight:
+    def _without_shadows(self, baked: BakedLight, *, lockstep: bool) -> BakedLight:
         """Return the light of what stands still, as it stands; `baked` is as the world has it."""
         if self._light is None:
             return baked
         light = self._light.light
+        # In lockstep no picture depends on those before it.
+        rough = not lockstep and not self._light.refined
         known = self._base
         if known is None or known[0] is not light or known[1].environment is not baked.environment:
-            self._base = known = light, replace(light, environment=baked.environment)
+            shown = replace(light, environment=baked.environment, rough=rough)
+            self._base = known = light, shown
         return known[1]
 
     def _with_shadows(self, light: BakedLight, *, lockstep: bool) -> BakedLight:
