@@ -65,7 +65,7 @@ class ChangeFollower:
         ----------
         snapshot : WorldSnapshot
         lockstep : bool
-            False leaves out what goes on moving.
+            False leaves out what keeps moving.
         """
         original, contents = self._original, snapshot.contents
         assert original.baked is not None

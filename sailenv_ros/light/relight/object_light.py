@@ -73,7 +73,7 @@ class PlacedObject:
 
     @property
     def place(self) -> tuple[object, ...]:
-        """What tells objects and their places apart; it keeps the model, told by identity."""
+        """Key of the object at its place; it keeps the model, told by identity."""
         return self.id, self.model, self.scale, self.world_from_body.tobytes()
 
     @property

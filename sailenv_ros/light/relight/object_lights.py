@@ -43,7 +43,7 @@ ids; others have that of the probes."""
 
 
 _Known: TypeAlias = tuple[tuple[object, ...], ObjectLight]
-"""What light depends on, and light."""
+"""Light on an object, after all that it depends on."""
 
 
 def can_be_lit(drawn: DrawnInstance) -> bool:

@@ -39,7 +39,7 @@ __all__ = ["ObjectShadows"]
 Floats = NDArray[np.float32]
 
 CHANGED, WHOLE = 1, 2
-"""States of points: their light is another one, or is to be found anew."""
+"""States of points: their light is another one, or is to be found again."""
 
 LEAST = 0.02
 """Objects that may take less of a patch's view than this share change nothing there."""

@@ -37,7 +37,7 @@ READY_FRAMES = 3
 renders fewer does not pay for it."""
 
 _Shown = tuple[object, ...]
-"""What is shown: light, changes and places of what rests."""
+"""Key of shadows: the light, changes, and places of objects that rest."""
 
 _Key = tuple[tuple[int, bytes | None, object], ...]
 

@@ -26,7 +26,7 @@ MOST = 6e4
 """Largest value of a light map."""
 
 FAR_M = 2.0
-"""What is farther is as good as endless, to the kernels too [m]."""
+"""Distance that stands for all that is farther, in the kernels too [m]."""
 
 TILE = 4
 """Texels to a side of a patch."""
@@ -37,7 +37,17 @@ what hides light is near: many rays leave little noise."""
 
 
 class PointChanges(NamedTuple):
-    """What changes at points: (K,) states, (K, C) changes, (K,) distances of what was met [m]."""
+    """Changes of light at points.
+
+    Attributes
+    ----------
+    state : (K,) uint8
+        As `gather_change` tells it.
+    change : (K, C) float32
+        Irradiance / pi.
+    nearness : (K,) float32
+        Harmonic mean of the distances of what was met [m].
+    """
 
     state: NDArray[np.uint8]
     change: Floats
