@@ -25,6 +25,7 @@ from sailenv_ros.light.relight.shadow_maps import (
     INSIDE,
     PointChanges,
     ShadowMaps,
+    with_neighbours,
 )
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
@@ -53,7 +54,7 @@ TOUCHING = 4.0
 without noise."""
 
 LEAST_DIRECT = 0.02
-"""Share of what lamps give a patch below which their shadows have no edges that are seen."""
+"""Share of what small lamps give a patch below which no edge of a shadow is seen."""
 
 
 class ObjectShadows:
@@ -109,7 +110,7 @@ class ObjectShadows:
         if not left and not taken:
             return False
         self._things, self._threads = dict(things), threads
-        self._find(np.flatnonzero(self._may_change([*left, *taken])))
+        self._find(self._may_change([*left, *taken]))
         return True
 
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -158,7 +159,7 @@ class ObjectShadows:
         every = [thing for _, thing in self._things.values()]
         asked = changed._may_change(every) & (surfaces.wanted == WHOLE)
         asked |= changed._may_change([self._things[id_][1] for id_ in near])
-        changed._find(np.flatnonzero(asked))
+        changed._find(asked)
         return changed
 
     def on(self, light: BakedLight) -> BakedLight:
@@ -194,16 +195,17 @@ class ObjectShadows:
         )  # fmt: skip
         return (found > 0) & (self._surfaces.wanted > 0)
 
-    def _find(self, asked: NDArray[np.intp]) -> None:
+    def _find(self, again: NDArray[np.bool_]) -> None:
         """Find what changes at patches, and at the texels of those where that is not enough."""
         surfaces, patches = self._surfaces, self._patches
         every = [thing for _, (_, thing) in sorted(self._things.items())]
-        again = np.zeros(len(patches.state), bool)
-        again[asked] = True
+        # Whether a patch is enough depends on those beside it, too.
+        again = with_neighbours(surfaces.scene, again)
         self._maps.forget(again)
         kept = ~again[surfaces.scene.patches.of_texel[self._texels]]
-        patches.put(asked, PointChanges.none(len(asked), patches.change.shape[1]))
-        asked = asked[self._may_change(every)[asked]]
+        nothing = PointChanges.none(int(again.sum()), patches.change.shape[1])
+        patches.put(np.flatnonzero(again), nothing)
+        asked = np.flatnonzero(again & self._may_change(every))
         world = self._world_of(every)
         found = self._gathered(
             world, surfaces.patch_positions, surfaces.patch_normals, asked, FINE.rays, 0
@@ -230,12 +232,13 @@ class ObjectShadows:
 
     def _is_uneven(self, asked: NDArray[np.intp], found: PointChanges) -> NDArray[np.bool_]:
         """Return where light changes within a patch."""
-        first = found.change.shape[1] - len(self._records)
-        direct = self._surfaces.scene.direct[asked][:, [*self._records]]
-        lost = np.abs(found.change[:, first:]).sum(axis=1)
-        shadowed = lost > LEAST_DIRECT * np.maximum(direct.sum(axis=1), 1e-6)
+        scene, change = self._surfaces.scene, self._patches.change
+        # Those of area lights are soft.
+        lost = np.abs(change[:, change.shape[1] - len(self._lamps) :]).sum(axis=1)
+        direct = scene.direct[:, self._lamps].sum(axis=1)
+        shadowed = with_neighbours(scene, lost > LEAST_DIRECT * np.maximum(direct, 1e-6))
         near = (found.nearness < NEAR * self._size[asked]) | (found.state == INSIDE)
-        uneven: NDArray[np.bool_] = (found.state > 0) & (near | shadowed)
+        uneven: NDArray[np.bool_] = ((found.state > 0) & near) | shadowed[asked]
         return uneven
 
     def _texels_of(self, patches: NDArray[np.intp]) -> NDArray[np.intp]:

@@ -9,12 +9,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.moved_surfaces import MovedSurfaces
 from sailenv_ros.light.relight.quality import FINE
 from sailenv_ros.native.relight_kernels import smooth_change, spread_change
 from sailenv_ros.native.relight_types import MappedTexels, PatchMap
 
-__all__ = ["INSIDE", "PointChanges", "ShadowMaps"]
+__all__ = ["INSIDE", "PointChanges", "ShadowMaps", "with_neighbours"]
 
 Floats = NDArray[np.float32]
 Maps = Sequence[NDArray[np.float16]]
@@ -148,10 +149,7 @@ class ShadowMaps:
     def _written_again(self) -> NDArray[np.bool_]:
         """Return (N,) bool: the texels into which anything reaches from patches forgotten."""
         scene = self._surfaces.scene
-        tiles = np.zeros((scene.side // TILE + 1, scene.side // TILE + 1), bool)
-        columns, rows = scene.patches.places[self._forgotten].astype(np.intp).T
-        tiles[rows // TILE, columns // TILE] = True
-        tiles = _widened(_widened(tiles, FINE.smoothing + 1).T, FINE.smoothing + 1).T
+        tiles = _tiles_near(scene, self._forgotten, FINE.smoothing + 1)
         rows, columns = np.divmod(scene.places, scene.side)
         found: NDArray[np.bool_] = tiles[rows // TILE, columns // TILE]
         return found
@@ -186,6 +184,21 @@ class ShadowMaps:
             lit = _flat(old)[at] + change[known, column : column + depth]
             _flat(new)[at] = np.clip(lit, 0.0, MOST)
             column += depth
+
+
+def with_neighbours(scene: BakedScene, patches: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return (P,) bool: patches, and those beside them in the map."""
+    columns, rows = scene.patches.places.astype(np.intp).T
+    found: NDArray[np.bool_] = _tiles_near(scene, patches, 1)[rows // TILE, columns // TILE]
+    return found
+
+
+def _tiles_near(scene: BakedScene, patches: NDArray[np.bool_], by: int) -> NDArray[np.bool_]:
+    """Return the tiles of the map, up to so many from those of patches."""
+    tiles = np.zeros((scene.side // TILE + 1, scene.side // TILE + 1), bool)
+    columns, rows = scene.patches.places[patches].astype(np.intp).T
+    tiles[rows // TILE, columns // TILE] = True
+    return _widened(_widened(tiles, by).T, by).T
 
 
 def _widened(tiles: NDArray[np.bool_], by: int) -> NDArray[np.bool_]:
