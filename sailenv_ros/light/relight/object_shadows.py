@@ -53,8 +53,9 @@ TOUCHING = 4.0
 """Where it is nearer than so many times that, light changes so quickly that only many rays tell it
 without noise."""
 
-LEAST_DIRECT = 0.02
-"""Share of what small lamps give a patch below which no edge of a shadow is seen."""
+LEAST_DIRECT, LEAST_SOFT = 0.02, 0.1
+"""Shares of what small lamps, and area lights, give a patch below which no edges of their shadows
+are seen."""
 
 
 class ObjectShadows:
@@ -233,10 +234,12 @@ class ObjectShadows:
     def _is_uneven(self, asked: NDArray[np.intp], found: PointChanges) -> NDArray[np.bool_]:
         """Return where light changes within a patch."""
         scene, change = self._surfaces.scene, self._patches.change
-        # Those of area lights are soft.
-        lost = np.abs(change[:, change.shape[1] - len(self._lamps) :]).sum(axis=1)
-        direct = scene.direct[:, self._lamps].sum(axis=1)
-        shadowed = with_neighbours(scene, lost > LEAST_DIRECT * np.maximum(direct, 1e-6))
+        areas, lamps = np.split(
+            change[:, change.shape[1] - len(self._records) :], [len(self._areas)], 1
+        )
+        shadowed = _share(lamps, scene.direct[:, self._lamps]) > LEAST_DIRECT
+        shadowed = with_neighbours(scene, shadowed)
+        shadowed |= _share(areas, scene.direct[:, self._areas]) > LEAST_SOFT
         near = (found.nearness < NEAR * self._size[asked]) | (found.state == INSIDE)
         uneven: NDArray[np.bool_] = ((found.state > 0) & near) | shadowed[asked]
         return uneven
@@ -281,6 +284,12 @@ class ObjectShadows:
         """Return the maps that shadows are in: bounced light, and direct light of some layers."""
         layers = light.layers
         return [layer.bounced for layer in layers] + [layers[n].direct for n in self._records]
+
+
+def _share(change: Floats, light: Floats) -> Floats:
+    """Return (P,) float32: how much changes of (P, N) lights of each patch."""
+    share: Floats = np.abs(change).sum(axis=1) / np.maximum(light.sum(axis=1), 1e-6)
+    return share
 
 
 def _key(things: Mapping[int, tuple[object, PlacedObject]], id_: int) -> object:
