@@ -133,8 +133,7 @@ struct DirectLightDelta {
 
 // `whole`: all of the light is wanted, whatever changed.
 static inline DirectLightDelta direct_light_delta(const RayScene& s, const SeenChanges& between,
-                                                  const RayLight& l, const float* p,
-                                                  const float* n,
+                                                  const RayLight& l, const float* p, const float* n,
                                                   const float* pattern, int64_t rays,
                                                   uint32_t number, bool whole) {
     DirectLightDelta result = {0.0f, 0.0f, 0.0f, 0.0f, false};

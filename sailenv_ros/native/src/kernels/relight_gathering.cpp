@@ -274,7 +274,8 @@ SAILENV_KERNEL(gather_probe_change)
 SAILENV_KERNEL(direct_light_delta)
 (int64_t threads, const sailenv::RayScene* scene, const sailenv::RayLight* light, int64_t count,
  const float* positions, const float* normals, const int32_t* patch, const uint32_t* numbers,
- const uint8_t* wanted, int64_t rays, const float* pattern, uint8_t* state, float* direct, float* share) {
+ const uint8_t* wanted, int64_t rays, const float* pattern, uint8_t* state, float* direct,
+ float* share) {
     using namespace sailenv;
     const RayScene& s = *scene;
     const RayLight& l = *light;

@@ -174,13 +174,13 @@ SAILENV_KERNEL(spread_change)
 }
 
 // Averages what was found at patches over those around them, over less where other things are
-// near to either: there light changes quickly. Neighbours are `step` texels apart. Patches whose light was worked out anew and others are kept
-// apart. found, nearness: (patches,); change: (patches, channels). Result: smooth_found and smooth,
-// likewise.
+// near to either: there light changes quickly. Neighbours are `step` texels apart. Patches whose
+// light was worked out anew and others are kept apart. found, nearness: (patches,); change:
+// (patches, channels). Result: smooth_found and smooth, likewise.
 SAILENV_KERNEL(smooth_change)
 (int64_t threads, const sailenv::PatchMap* patches, int64_t radius, int64_t step,
- const uint8_t* found, const float* nearness, int64_t channels, const float* change, uint8_t* smooth_found,
- float* smooth) {
+ const uint8_t* found, const float* nearness, int64_t channels, const float* change,
+ uint8_t* smooth_found, float* smooth) {
     using namespace sailenv;
     const PatchMap& map = *patches;
     if (!sound(map) || radius < 0 || radius > 8 || step < 1 || step > 4 || channels < 1) {
