@@ -27,7 +27,7 @@ __all__ = [
 _AMBIENT = RecordKernel(
     "ambient_visibility",
     ("integer", "height width"),
-    ("array", "surface baked pattern lens rays"),
+    ("array", "surface known pattern lens rays"),
     ("integer", "parallel"),
     ("number", "radius_m least_reach_px reach_px bias scale same_surface"),
     ("integer", "step"),
@@ -72,7 +72,7 @@ class AmbientSettings(NamedTuple):
 
 def find_ambient_visibility(
     surface: NDArray[np.float32],
-    baked: NDArray[np.bool_],
+    known: NDArray[np.uint8],
     lens: NDArray[np.void],
     settings: AmbientSettings,
     pattern: NDArray[np.float32],
@@ -87,8 +87,9 @@ def find_ambient_visibility(
     ----------
     surface : (H, W, 2) float32
         Depth [m] and instance id.
-    baked : (65536,) bool
-        By instance id: surfaces whose light was baked.
+    known : (65536,) uint8
+        By instance id: 1 of surfaces whose light was baked, which do not darken each other; 2 of
+        those whose shadow is in that light: these and they do not either; 0 of others.
     lens : (1,) lens.LENS
     settings : AmbientSettings
     pattern : (16, 2, 12) float32
@@ -116,7 +117,7 @@ def find_ambient_visibility(
     """
     height, width = surface.shape[:2]
     checked("surface", surface, np.float32, (height, width, 2))
-    checked("baked", baked, np.bool_, (65536,))
+    checked("known", known, np.uint8, (65536,))
     checked("lens", lens, LENS, (1,))
     checked("pattern", pattern, np.float32, (16, 2, 12))
     shape = (height + 1) // 2, (width + 1) // 2
@@ -128,7 +129,7 @@ def find_ambient_visibility(
         height=height,
         width=width,
         surface=surface,
-        baked=baked,
+        known=known,
         pattern=pattern,
         lens=lens,
         rays=rays,

@@ -22,6 +22,7 @@ __all__ = [
     "gather_probe_change",
     "light_of_probes",
     "direct_light_delta",
+    "reached_points",
     "smooth_change",
     "spread_change",
 ]
@@ -29,11 +30,16 @@ __all__ = [
 Floats = NDArray[np.float32]
 
 _GATHER = Kernel("gather_change", "iaaa")
-_SMOOTH = Kernel("smooth_change", "iaiaaiaaa")
+_REACHED = Kernel("reached_points", "iaiaaaniaa")
+_SMOOTH = Kernel("smooth_change", "iaiiaaiaaa")
 _PROBES = Kernel("gather_probe_change", "iaiaiaiaa")
-_DELTA = Kernel("direct_light_delta", "iaaiaaaaiaaaa")
+_DELTA = Kernel("direct_light_delta", "iaaiaaaaaiaaaa")
 _INTERPOLATE = Kernel("light_of_probes", "iiiiiaaaiaaa")
 _SPREAD = Kernel("spread_change", "iaaaaa")
+
+
+MOST_CHANGED = 0.25
+"""Share of a patch's rays beyond which little of what was baked is of use."""
 
 
 def gather_change(
@@ -47,6 +53,8 @@ def gather_change(
     least: float,
     *,
     inside_share: float,
+    most_changed: float = MOST_CHANGED,
+    numbers: NDArray[np.uint32] | None = None,
     threads: int,
 ) -> tuple[NDArray[np.uint8], Floats, Floats, Floats]:
     """Gather what arrives at patches from others, and straight from area lights.
@@ -65,6 +73,10 @@ def gather_change(
         Patches of whose view changed things may take less than this share are skipped.
     inside_share : float
         A patch that sees more backs of surfaces than this share lies inside of something.
+    most_changed : float
+        Where more of the rays than this share meet a change, all of the light is gathered.
+    numbers : (P,) uint32 or None
+        Seeds of the patches' random numbers; None counts from 0.
 
     Returns
     -------
@@ -84,12 +96,14 @@ def gather_change(
         "positions": checked("positions", positions, np.float32, (None, 3)),
         "normals": checked("normals", normals, np.float32, (count, 3)),
         "wanted": checked("wanted", wanted, np.uint8, (count,)),
+        "numbers": _numbers(numbers, count),
         "pattern": checked("pattern", pattern, np.float32, (rays, 2)),
         "lights": checked("area lights", area_lights, RAY_LIGHT, (lights,)),
         "shot_pattern": checked("pattern of shots", shot_pattern, np.float32, (shots, 2)),
     }
-    numbers = {"count": count, "rays": rays, "light_count": lights, "shots": shots}
-    query = Record(asked, {**numbers, "least": float(least), "inside_share": float(inside_share)})
+    counts = {"count": count, "rays": rays, "light_count": lights, "shots": shots}
+    shares = {"least": least, "most_changed": most_changed, "inside_share": inside_share}
+    query = Record(asked, {**counts, **{name: float(share) for name, share in shares.items()}})
     found, nearness = np.zeros(count, np.uint8), np.zeros(count, np.float32)
     change = np.zeros((count, channels), np.float32)
     direct = np.zeros((count, lights), np.float32)
@@ -105,6 +119,7 @@ def smooth_change(
     nearness: Floats,
     change: Floats,
     *,
+    step: int = 4,
     threads: int,
 ) -> tuple[NDArray[np.uint8], Floats]:
     """Average what was found over neighbouring patches, up to `radius` of them to each side.
@@ -115,6 +130,8 @@ def smooth_change(
     found : (P,) uint8
     nearness : (P,) float32
     change : (P, C) float32
+    step : int
+        Texels from one to the next; 1 where each texel is a patch of its own.
 
     Returns
     -------
@@ -127,7 +144,7 @@ def smooth_change(
     smooth_found, smooth = np.zeros_like(found), np.zeros_like(change)
     if change.size:
         _SMOOTH(
-            threads, patches.record, radius, found, nearness, change.shape[1], change,
+            threads, patches.record, radius, step, found, nearness, change.shape[1], change,
             smooth_found, smooth,
         )  # fmt: skip
     return smooth_found, smooth
@@ -175,9 +192,10 @@ def direct_light_delta(
     found: NDArray[np.uint8],
     pattern: Floats,
     *,
+    numbers: NDArray[np.uint32] | None = None,
     threads: int,
 ) -> tuple[NDArray[np.uint8], Floats, Floats]:
-    """Find what changes of one light's direct part at texels.
+    """Find what changes of one light's direct part at texels; `numbers` as in `gather_change`.
 
     Returns
     -------
@@ -196,10 +214,47 @@ def direct_light_delta(
     state = np.zeros(count, np.uint8)
     direct, share = np.zeros(count, np.float32), np.zeros(count, np.float32)
     _DELTA(
-        threads, scene, light, count, positions, normals, patch_of_texel, found,
-        len(pattern), pattern, state, direct, share,
+        threads, scene, light, count, positions, normals, patch_of_texel, _numbers(numbers, count),
+        found, len(pattern), pattern, state, direct, share,
     )  # fmt: skip
     return state, direct, share
+
+
+def reached_points(
+    scene: NDArray[np.void],
+    positions: Floats,
+    normals: Floats,
+    margins: Floats,
+    lights: NDArray[np.void],
+    *,
+    least: float,
+    threads: int,
+) -> NDArray[np.uint8]:
+    """Find at which points what changes may change the light.
+
+    Parameters
+    ----------
+    margins : (N,) float32
+        What is within this distance of a point, or of its way to a light, counts [m].
+    lights : (L,) RAY_LIGHT
+    least : float
+        Things that may take less of a point's view than this share do not.
+
+    Returns
+    -------
+    found : (N,) uint8
+        1 in its view, 2 only between it and a light, 0 neither.
+    """
+    count = len(positions)
+    checked("positions", positions, np.float32, (None, 3))
+    checked("normals", normals, np.float32, (count, 3))
+    checked("margins", margins, np.float32, (count,))
+    checked("lights", lights, RAY_LIGHT, (None,))
+    found = np.zeros(count, np.uint8)
+    _REACHED(
+        threads, scene, count, positions, normals, margins, least, len(lights), lights, found
+    )  # fmt: skip
+    return found
 
 
 def light_of_probes(
@@ -250,3 +305,9 @@ def spread_change(
     checked("found", found, np.uint8, (patches.count,))
     checked("change", change, np.float32, (patches.count, maps.channels))
     _SPREAD(threads, texels.record, patches.record, found, change, maps.record)
+
+
+def _numbers(numbers: NDArray[np.uint32] | None, count: int) -> NDArray[np.uint32]:
+    if numbers is None:
+        return np.arange(count, dtype=np.uint32)
+    return checked("numbers", numbers, np.uint32, (count,))

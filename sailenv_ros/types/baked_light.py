@@ -192,6 +192,12 @@ class BakedLight:
         by the light of each layer; not what lies behind glass. For exposure meters.
     environment : Environment or None
         The surroundings as the scene has them of itself; None until a world takes the bake.
+    rough : bool
+        True of light that is refined soon: what is mirrored may wait for that.
+    casters : frozenset of int
+        Instance ids of what can move and whose shadow is in the light map.
+    unshadowed : BakedLight or None
+        The same without these shadows; None if there are none.
     checksum : str
         Of the file that it was read from; empty for light that was never in one, or was changed.
     """
@@ -202,4 +208,12 @@ class BakedLight:
     probes: ProbeGrid
     seen: NDArray[np.float16] = field(default_factory=lambda: np.zeros((0, 0, 3), np.float16))
     environment: Environment | None = None
+    rough: bool = False
+    casters: frozenset[int] = frozenset()
+    unshadowed: BakedLight | None = None
     checksum: str = ""
+
+    @property
+    def of_still(self) -> BakedLight:
+        """The light without anything of what can move."""
+        return self if self.unshadowed is None else self.unshadowed

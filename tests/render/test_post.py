@@ -8,7 +8,11 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.render.picture.ambient_occlusion import ambient_visibility
+from sailenv_ros.render.picture.ambient_occlusion import (
+    BAKED_LIGHT,
+    BAKED_SHADOW,
+    ambient_visibility,
+)
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.render.picture.tone import code_table, filmic, tone_mapped
 from sailenv_ros.render.picture.tone_map import apply_visibility, tone_map
@@ -42,7 +46,7 @@ ALL = PictureSettings(
     full_well=500.0,
     read_noise=4.0,
 )
-NONE_BAKED = np.zeros(65536, np.bool_)
+NONE_BAKED = np.zeros(65536, np.uint8)
 CURVES: tuple[ToneCurve, ...] = ("filmic", "linear")
 
 
@@ -143,7 +147,7 @@ def test_corners_are_dark_and_what_is_free_is_not() -> None:
     """Within the radius of the joint of wall and floor light is lost; beyond it none."""
     surface, intrinsics = corner(320, 240)
     share, inverse = ambient_visibility(
-        surface, intrinsics, strength=1.0, radius_m=0.4, baked=NONE_BAKED
+        surface, intrinsics, strength=1.0, radius_m=0.4, known=NONE_BAKED
     )
     points = intrinsics.unproject(surface[..., 0])[::2, ::2]
     away = np.hypot(points[..., 1] - 1.0, points[..., 2] - 3.0)
@@ -169,7 +173,7 @@ def test_a_plane_does_not_darken_itself(yaw_deg: float) -> None:
         z = 3.0 * normal[2] / (intrinsics.rays() @ normal)
     surface = np.stack([np.where(z > 0.0, z, np.inf), np.ones_like(z)], axis=-1)
     share, _ = ambient_visibility(
-        surface.astype(np.float32), intrinsics, strength=1.0, radius_m=2.0, baked=NONE_BAKED
+        surface.astype(np.float32), intrinsics, strength=1.0, radius_m=2.0, known=NONE_BAKED
     )
     assert (share == 255).all()
 
@@ -177,17 +181,32 @@ def test_a_plane_does_not_darken_itself(yaw_deg: float) -> None:
 def test_what_was_baked_is_left_alone() -> None:
     """Two baked surfaces do not darken each other; one that moves darkens both."""
     surface, intrinsics = corner()
-    baked = NONE_BAKED.copy()
-    baked[[1, 2]] = True
+    known = NONE_BAKED.copy()
+    known[[1, 2]] = BAKED_LIGHT
     keys = {"strength": 1.0, "radius_m": 0.4}
-    assert (ambient_visibility(surface, intrinsics, baked=baked, **keys)[0] == 255).all()
-    baked[1] = False
-    share = ambient_visibility(surface, intrinsics, baked=baked, **keys)[0]
+    assert (ambient_visibility(surface, intrinsics, known=known, **keys)[0] == 255).all()
+    known[1] = 0
+    share = ambient_visibility(surface, intrinsics, known=known, **keys)[0]
     wall = surface[::2, ::2, 1] == 1
-    np.testing.assert_array_equal(
-        share[wall], ambient_visibility(surface, intrinsics, baked=NONE_BAKED, **keys)[0][wall]
-    )
+    every = ambient_visibility(surface, intrinsics, known=NONE_BAKED, **keys)[0]
+    np.testing.assert_array_equal(share[wall], every[wall])
     assert share[~wall].min() < 160
+
+
+def test_a_shadow_that_was_baked_is_not_drawn_again() -> None:
+    """Its owner and what was baked leave each other alone; others darken both."""
+    surface, intrinsics = corner()
+    known = NONE_BAKED.copy()
+    known[1:3] = BAKED_SHADOW, BAKED_LIGHT
+    keys = {"strength": 1.0, "radius_m": 0.4}
+    assert (ambient_visibility(surface, intrinsics, known=known, **keys)[0] == 255).all()
+    wall = surface[::2, ::2, 1] == 1
+    every = ambient_visibility(surface, intrinsics, known=NONE_BAKED, **keys)[0]
+    for which, darkened in ((1, ~wall), (2, wall)):
+        other = known.copy()
+        other[which] = 0
+        share = ambient_visibility(surface, intrinsics, known=other, **keys)[0]
+        np.testing.assert_array_equal(share[darkened], every[darkened])
 
 
 @pytest.mark.parametrize(("width", "height"), [(8, 8), (9, 11), (33, 8), (97, 61)])
@@ -200,7 +219,7 @@ def test_any_size_two_threads_make_what_one_makes(width: int, height: int) -> No
     pictures = []
     for threads in (1, 2):
         shade = ambient_visibility(
-            surface, intrinsics, strength=1.0, radius_m=1.0, baked=NONE_BAKED, threads=threads
+            surface, intrinsics, strength=1.0, radius_m=1.0, known=NONE_BAKED, threads=threads
         )
         pictures.append(tone_map(radiance, table, shade, surface, threads=threads))
     np.testing.assert_array_equal(pictures[0], pictures[1])

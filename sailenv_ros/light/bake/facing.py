@@ -6,7 +6,9 @@ the outer one, of a sheet that hangs before a wall the open one.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +21,7 @@ from sailenv_ros.light.bake.worker_pool import in_chunks
 from sailenv_ros.rays.light_rays import RayScene
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
-__all__ = ["lit_texels"]
+__all__ = ["lit_sides", "lit_texels", "on_lit_sides"]
 
 RAYS = 42
 FAR_M = 0.5
@@ -43,22 +45,57 @@ def lit_texels(
     geometry: StaticGeometry, scene: RayScene, layout: Layout, workers: int = 1
 ) -> Texels:
     """Return the texels in use, on the open side of their surfaces, beyond layers that crossed."""
-    texels = _facing_the_light(geometry, scene, rasterised(geometry, layout), workers)
+    texels = rasterised(geometry, layout)
+    return on_lit_sides(texels, lit_sides(geometry, scene, texels, workers))
+
+
+def lit_sides(
+    geometry: StaticGeometry, scene: RayScene, texels: Texels, workers: int = 1
+) -> dict[str, NDArray[Any]]:
+    """Return what rays tell of the sides that texels are lit from, for `on_lit_sides`.
+
+    Returns
+    -------
+    sides : dict of str to array
+        ``turned``, (T,) uint8, whether the back of each triangle is the open side; ``lifted``,
+        (K,) int32, texels that lie beyond a layer that crossed theirs, and their ``positions``,
+        (K, 3) float32 [m].
+    """
+    turned = _turned(geometry, scene, texels, workers)
+    facing = _turned_over(texels, turned)
     lit_from = above_crossed_layers(
-        geometry, scene, texels.positions, texels.faces, texels.triangle
+        geometry, scene, facing.positions, facing.faces, facing.triangle
     )
-    return replace(texels, positions=lit_from)
+    lifted = np.flatnonzero((lit_from != facing.positions).any(axis=1)).astype(np.int32)
+    return {
+        "turned": turned.astype(np.uint8),
+        "lifted": lifted,
+        "positions": lit_from[lifted],
+    }
 
 
-def _facing_the_light(
+def on_lit_sides(texels: Texels, sides: Mapping[str, NDArray[Any]]) -> Texels:
+    """Return rasterised texels where they are lit from; see `lit_sides`."""
+    texels = _turned_over(texels, sides["turned"] != 0)
+    positions = texels.positions.copy()
+    positions[sides["lifted"]] = sides["positions"]
+    return replace(texels, positions=positions)
+
+
+def _turned_over(texels: Texels, turned: NDArray[np.bool_]) -> Texels:
+    if not turned.any():
+        return texels
+    sign = np.where(turned[texels.triangle], np.float32(-1.0), np.float32(1.0))[:, None]
+    return replace(texels, normals=texels.normals * sign, faces=texels.faces * sign)
+
+
+def _turned(
     geometry: StaticGeometry, scene: RayScene, texels: Texels, workers: int
-) -> Texels:
-    """Turn the texels of two-sided triangles whose back is the open side."""
+) -> NDArray[np.bool_]:
+    """Return (T,) bool: two-sided triangles whose back is the open side."""
     shown = np.zeros(geometry.triangle_count, dtype=bool)
     shown[texels.triangle] = True
     asked = np.flatnonzero(geometry.two_sided & shown)
-    if not len(asked):
-        return texels
     turned = np.zeros(geometry.triangle_count, dtype=bool)
 
     def find(first: int, end: int) -> None:
@@ -67,8 +104,7 @@ def _facing_the_light(
         turned[own] = back > CLEARLY * front
 
     in_chunks(find, len(asked), CHUNK_TRIANGLES, workers)
-    sign = np.where(turned[texels.triangle], np.float32(-1.0), np.float32(1.0))[:, None]
-    return replace(texels, normals=texels.normals * sign, faces=texels.faces * sign)
+    return turned
 
 
 def _openness(

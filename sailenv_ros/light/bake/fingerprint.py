@@ -17,7 +17,7 @@ from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Material, Model
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["fingerprint"]
+__all__ = ["fingerprint", "model_digest"]
 
 _NOT_BAKED = ("colour", "intensity", "indirect_multiplier")
 """Properties of lights that are not baked: each light has a layer of its own, which they scale."""
@@ -34,7 +34,7 @@ def fingerprint(snapshot: WorldSnapshot, settings: BakeSettings | None = None) -
         if drawn.is_baked:
             _add(digest, [drawn.instance.id, list(drawn.scale), list(drawn.lit_by)])
             _add_array(digest, pose)
-            digest.update(_of_model(drawn.model))
+            digest.update(model_digest(drawn.model))
     return digest.hexdigest()
 
 
@@ -64,8 +64,8 @@ def _add_sky(digest: hashlib.blake2b, environment: Environment) -> None:
 
 
 @lru_cache(maxsize=512)
-def _of_model(model: Model) -> bytes:
-    """Hash a model; models are compared by identity and never change."""
+def model_digest(model: Model) -> bytes:
+    """Hash what baked light depends on of a model; models never change."""
     digest = hashlib.blake2b(digest_size=16)
     for part in model.parts:
         mesh = part.mesh

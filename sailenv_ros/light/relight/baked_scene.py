@@ -9,20 +9,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.bounces import patches_of
-from sailenv_ros.light.bake.facing import lit_texels
+from sailenv_ros.light.bake.facing import lit_sides, on_lit_sides
 from sailenv_ros.light.bake.lamp_glow import glows_of
 from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
-from sailenv_ros.light.bake.texels import Texels
+from sailenv_ros.light.bake.texels import Texels, rasterised
 from sailenv_ros.light.relight.ray_shapes import Shape, shape_of
+from sailenv_ros.native.library import native_library
 from sailenv_ros.rays.light_rays import RayScene, glass_of
 from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
+from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.baked_light import BakedLight, Unwrapping
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 from sailenv_ros.types.model import Material, Model
@@ -192,7 +195,8 @@ class BakedScene:
         self, geometry: StaticGeometry, threads: int, lit_by: Mapping[int, Iterable[str]]
     ) -> None:
         layout = Layout(side=self.side, charts={}, places=self._places(geometry))
-        texels = lit_texels(geometry, RayScene(geometry), layout, max(threads, 1))
+        texels = rasterised(geometry, layout)
+        texels = on_lit_sides(texels, self._lit_sides(geometry, texels, max(threads, 1)))
         ids = np.array([instance.id for instance in geometry.instances], np.int32)
         self.places = (texels.rows * self.side + texels.columns).astype(np.int32)
         self.positions = np.ascontiguousarray(texels.positions, np.float32)
@@ -218,6 +222,20 @@ class BakedScene:
             self.direct[:, number] = self.patches.means(direct)
         self.sent = self.radiance(self.irradiance, self.direct)
         self.brightest = float(np.percentile(self.irradiance.sum(axis=1), 90))
+
+    def _lit_sides(
+        self, geometry: StaticGeometry, texels: Texels, threads: int
+    ) -> Mapping[str, NDArray[Any]]:
+        """Return the sides that texels are lit from; kept on disk for light that was read there."""
+
+        def find() -> Mapping[str, NDArray[Any]]:
+            return lit_sides(geometry, RayScene(geometry), texels, threads)
+
+        if not self.baked.checksum:
+            return find()
+        key = self.baked.checksum, native_library().digest, *self.drawn
+        code = code_digest("light/bake", "native", "rays", "types")
+        return cached_arrays("sides", key, find, code=code)
 
     def _places(self, geometry: StaticGeometry) -> Floats:
         """Return (T, 3, 2) float32: the corners of the triangles in the map [texels]."""

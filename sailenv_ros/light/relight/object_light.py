@@ -20,7 +20,7 @@ from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.light.relight.quality import Quality
 from sailenv_ros.light.relight.ray_world import RayWorld, ray_world
-from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance
+from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance, placed_instances
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
     direct_light_delta,
@@ -29,9 +29,10 @@ from sailenv_ros.native.relight_kernels import (
 )
 from sailenv_ros.rays.model_triangles import triangles_of
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
+from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Model
 
-__all__ = ["ObjectLighting", "PlacedObject", "SurfacePoints"]
+__all__ = ["ObjectLighting", "PlacedObject", "SurfacePoints", "near_changes"]
 
 Floats = NDArray[np.float32]
 Doubles = NDArray[np.float64]
@@ -70,6 +71,19 @@ class PlacedObject:
     world_from_body: NDArray[np.float64]
     moves: bool = False
 
+    @property
+    def place(self) -> tuple[object, ...]:
+        """Key of the object at its place; it keeps the model, told by identity."""
+        return self.id, self.model, self.scale, self.world_from_body.tobytes()
+
+    @property
+    def ball(self) -> tuple[Doubles, float]:
+        """Centre [m], world frame, and radius [m] of a ball around it."""
+        bounds = self.model.bounds() * np.asarray(self.scale)
+        pose = self.world_from_body
+        radius = float(np.linalg.norm(np.ptp(bounds, axis=0)) / 2.0)
+        return pose[:3, :3] @ bounds.mean(axis=0) + pose[:3, 3], radius
+
 
 class SurfacePoints:
     """Points on models' surfaces, chosen once for each model and number."""
@@ -94,6 +108,11 @@ class ObjectLighting:
     changes : sequence of Change
         What was baked and stands elsewhere now.
     points : SurfacePoints
+
+    Attributes
+    ----------
+    world : RayWorld
+        All but what can move.
     """
 
     def __init__(self, scene: BakedScene, changes: Sequence[Change], points: SurfacePoints) -> None:
@@ -103,7 +122,9 @@ class ObjectLighting:
         self._area = [n for n, one in enumerate(self._lights) if one and one.type == "area"]
         probes = [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in layers]
         self._probes = np.ascontiguousarray(np.concatenate(probes, axis=-1))
-        self._world = ray_world(scene, changes, scene.sent, scene.sent, self._radiance_of_change)
+        self.world = ray_world(
+            scene, changes, scene.sent, scene.sent, self._radiance_of_change, settled=True
+        )
 
     def light_on(
         self, thing: PlacedObject, near: Sequence[PlacedObject], quality: Quality
@@ -117,7 +138,7 @@ class ObjectLighting:
             What else can move and stands near enough to count.
         quality : Quality
         """
-        world = self._world.with_more([self._placed(one) for one in near])
+        world = self.world.with_more([self.placed(one) for one in near])
         positions, normals = _placed_points(
             thing, *self._points.of(thing.model, quality.object_points)
         )
@@ -129,7 +150,8 @@ class ObjectLighting:
             direct=np.ascontiguousarray((fit @ direct).T, np.float32),
         )
 
-    def _placed(self, thing: PlacedObject) -> PlacedInstance:
+    def placed(self, thing: PlacedObject) -> PlacedInstance:
+        """Return an object as rays meet it."""
         pose = thing.world_from_body
         shape = self._scene.shape_of(thing.model, thing.scale, None)
         radiance = self._radiance(thing.model, thing.scale, pose)
@@ -178,6 +200,25 @@ class ObjectLighting:
             direct[:, number] = np.where(state > 0, value, 0.0)
         weights = np.clip(nearness.astype(np.float64) / HIDDEN_M, LEAST_WEIGHT, 1.0)
         return bounced.astype(np.float64), direct, np.where(found == INSIDE, 1e-4, weights)
+
+
+def near_changes(
+    scene: BakedScene, things: Sequence[PlacedObject], changes: Sequence[Change], within_m: float
+) -> frozenset[int]:
+    """Return the ids of objects near furniture that has changed, where it stood or stands."""
+    furniture = [part for change in changes for part in placed_instances(scene, change, None)]
+    return frozenset(
+        thing.id for thing in things if any(_is_near(thing, part, within_m) for part in furniture)
+    )
+
+
+def _is_near(thing: PlacedObject, part: PlacedInstance, within_m: float) -> bool:
+    centre, radius = thing.ball
+    inverse = invert(part.pose)
+    own = inverse[:3, :3] @ centre + inverse[:3, 3]
+    tree = part.shape.tree
+    away = np.maximum(np.maximum(tree.low - own, own - tree.high), 0.0)
+    return float(np.linalg.norm(away)) < radius + within_m
 
 
 def _placed_points(

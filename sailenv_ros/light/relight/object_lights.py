@@ -9,13 +9,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
-from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
+from sailenv_ros.light.relight.object_light import (
+    ObjectLighting,
+    PlacedObject,
+    SurfacePoints,
+    near_changes,
+)
 from sailenv_ros.light.relight.quality import FINE, QUICK
 from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot
 
@@ -27,9 +34,16 @@ STEP_M, STEP = 1e-3, 1.0 / 512.0
 NEAR_M = 0.25
 """Things whose balls are farther apart neither shade nor light each other [m]."""
 
+FAR_M = 1.0
+"""Furniture that is farther from an object's ball counts when its own light is refined [m]."""
+
 MOST_MOVING = 12
 """Of the objects that move so many get light of their own in each snapshot, those with the lowest
 ids; others have that of the probes."""
+
+
+_Known: TypeAlias = tuple[tuple[object, ...], ObjectLight]
+"""Light on an object, after all that it depends on."""
 
 
 def can_be_lit(drawn: DrawnInstance) -> bool:
@@ -56,20 +70,36 @@ def movable_objects(snapshot: WorldSnapshot) -> list[PlacedObject]:
 
 
 def with_object_light(snapshot: WorldSnapshot, scene: BakedScene, threads: int) -> WorldSnapshot:
-    """Return a snapshot of a scene that is as it was baked, with the light on all that can move."""
-    light = ObjectLights().update(snapshot, scene, (), threads=threads)
-    return replace(snapshot, object_light=light)
+    """Return a snapshot of a scene that is as it was baked, with the light on all that can move.
+
+    Its shadows are in the light of what was baked.
+    """
+    objects, contents = ObjectLights(), snapshot.contents
+    assert contents.baked is not None
+    light = objects.update(snapshot, scene, (), threads=threads)
+    shadows = ShownShadows(scene, objects.points)
+    rest = [thing for thing in objects.things if not thing.moves]
+    baked = shadows.on(contents.baked, rest, (), threads=threads)
+    return replace(snapshot, contents=replace(contents, baked=baked), object_light=light)
 
 
 class ObjectLights:
-    """The light on what can move in one scene."""
+    """The light on what can move in one scene.
+
+    Attributes
+    ----------
+    points : SurfacePoints
+    things : list of PlacedObject
+        Where objects were at the last update, to the steps that count.
+    """
 
     def __init__(self) -> None:
+        self.points, self.things = SurfacePoints(), list[PlacedObject]()
         self._of: tuple[object, ...] = ()
         self._seen: tuple[object, tuple[bytes, bytes]] = (None, (b"", b""))
-        self._points = SurfacePoints()
-        self._lighting: ObjectLighting | None = None
-        self._known: dict[int, tuple[tuple[object, ...], ObjectLight]] = {}
+        self._lightings: dict[tuple[object, ...], ObjectLighting] = {}
+        self._still: dict[int, _Known] = {}
+        self._known: dict[int, _Known] = {}
         self._light: Mapping[int, ObjectLight] = {}
 
     def update(
@@ -78,6 +108,7 @@ class ObjectLights:
         scene: BakedScene,
         changes: Sequence[Change],
         *,
+        rough: bool = False,
         threads: int,
     ) -> Mapping[int, ObjectLight]:
         """Return the light on objects, by instance id; the same mapping if nothing has changed.
@@ -89,43 +120,52 @@ class ObjectLights:
             Of its bake.
         changes : sequence of Change
             What was baked and stands elsewhere.
+        rough : bool
+            True leaves changes out of the light on what is far from them.
         threads : int
             The result does not depend on it.
         """
-        of = scene, *(change.key for change in changes)
+        of = scene, rough, *(change.key for change in changes)
         seen = snapshot.world_from_body.tobytes(), snapshot.moving.tobytes()
         instances = snapshot.contents.instances
         if of == self._of and instances is self._seen[0] and seen == self._seen[1]:
             return self._light
         self._seen = instances, seen
-        things = [_steady(thing) for thing in movable_objects(snapshot)]
-        if self._lighting is None or of != self._of:
-            self._lighting = ObjectLighting(scene, changes, self._points)
+        self.things = things = [_steady(thing) for thing in movable_objects(snapshot)]
+        if of != self._of:
+            if self._of[:1] != (scene,):
+                self._lightings, self._still = {}, {}
+            self._lightings = {key: one for key, one in self._lightings.items() if not key}
             self._of, self._known = of, {}
         chosen = _chosen(things)
         near = _near(things)
-        known = {}
+        affected = near_changes(scene, things, changes, FAR_M) if rough else frozenset()
+        known: dict[int, _Known] = {}
         asked = []
         for place in chosen:
             thing = things[place]
             around = [things[other] for other in near[place]]
             quality = QUICK if thing.moves else FINE
-            key = quality, _place_of(thing), *(_place_of(other) for other in around)
-            before = self._known.get(thing.id)
-            if before is not None and before[0] == key:
-                known[thing.id] = before
-            else:
-                asked.append((thing, around, quality, key))
-        if not asked and len(known) == len(self._known):
-            return self._light
-        lighting = self._lighting
-
-        with ThreadPoolExecutor(max(threads, 1)) as pool:
-            found = pool.map(lambda one: lighting.light_on(*one[:3]), asked)
-            for (thing, *_, key), light in zip(asked, found, strict=True):
-                known[thing.id] = key, light
-        self._known = known
-        self._light = {id_: light for id_, (_, light) in known.items()}
+            counted = () if rough and thing.id not in affected else tuple(changes)
+            moved = tuple(change.key for change in counted)
+            key = moved, quality, thing.place, *(other.place for other in around)
+            before = [all_.get(thing.id) for all_ in (self._known, self._still)]
+            same = next((one for one in before if one is not None and one[0] == key), None)
+            if same is not None:
+                known[thing.id] = same
+                continue
+            if moved not in self._lightings:
+                self._lightings[moved] = ObjectLighting(scene, counted, self.points)
+            asked.append((self._lightings[moved], thing, around, quality, key))
+        if known != self._known or asked:
+            with ThreadPoolExecutor(max(threads, 1)) as pool:
+                found = pool.map(lambda one: one[0].light_on(*one[1:4]), asked)
+                for (_, thing, *_, key), light in zip(asked, found, strict=True):
+                    known[thing.id] = key, light
+            self._known = known
+            # What no change counts for is so again when furniture is back.
+            self._still |= {id_: one for id_, one in known.items() if not one[0][0]}
+            self._light = {id_: light for id_, (_, light) in known.items()}
         return self._light
 
 
@@ -147,20 +187,12 @@ def _steady(thing: PlacedObject) -> PlacedObject:
     return replace(thing, world_from_body=pose + 0.0)
 
 
-def _place_of(thing: PlacedObject) -> tuple[object, ...]:
-    return thing.id, thing.model, thing.scale, thing.world_from_body.tobytes()
-
-
 def _near(things: list[PlacedObject]) -> list[list[int]]:
     """Return which others stand near each."""
     if not things:
         return []
-    centres, radii = np.empty((len(things), 3)), np.empty(len(things))
-    for row, thing in enumerate(things):
-        bounds = thing.model.bounds() * np.asarray(thing.scale)
-        centres[row] = thing.world_from_body[:3, :3] @ bounds.mean(axis=0)
-        radii[row] = np.linalg.norm(np.ptp(bounds, axis=0)) / 2.0
-    centres += np.array([thing.world_from_body[:3, 3] for thing in things])
+    balls = [thing.ball for thing in things]
+    centres, radii = np.array([ball[0] for ball in balls]), np.array([ball[1] for ball in balls])
     apart = np.linalg.norm(centres[:, None] - centres, axis=2)
     close = apart < radii[:, None] + radii + NEAR_M
     np.fill_diagonal(close, False)

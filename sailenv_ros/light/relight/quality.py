@@ -22,6 +22,8 @@ class Quality:
         From each probe.
     object_points, object_rays : int
         Points of each object that can move, and rays from each of them.
+    texel_rays : int
+        From each texel near such an object.
     smoothing : int
         How many patches to each side are averaged over at most.
     least : float
@@ -45,6 +47,7 @@ class Quality:
     probe_rays: int = 128
     object_points: int = 64
     object_rays: int = 64
+    texel_rays: int = 256
     smoothing: int = 2
     least: float = 0.002
     bounces: int = 8
@@ -61,6 +64,7 @@ QUICK = Quality(
     probe_rays=16,
     object_points=24,
     object_rays=24,
+    texel_rays=64,
     smoothing=3,
     least=0.02,
     bounces=4,

@@ -6,7 +6,7 @@ From `BakedScene` and changes to structures of `native.ray_types`.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,8 @@ def ray_world(
     before: Floats,
     after: Floats,
     radiance_of: Callable[[Change], Floats | None],
+    *,
+    settled: bool = False,
 ) -> RayWorld:
     """Put a scene and its changes together.
 
@@ -66,6 +68,8 @@ def ray_world(
         Radiance of the patches; read whenever rays are followed.
     radiance_of : callable
         Gives (C,) float32, what something sends out that came.
+    settled : bool
+        True has things stand before as they do after.
     """
     moved = {change.id for change in changes if change.came is None}
     charts = scene.baked.charts
@@ -79,6 +83,9 @@ def ray_world(
         for change in changes
         for thing in placed_instances(scene, change, radiance_of(change))
     ]
+    if settled:
+        resting += [replace(thing, before=True) for thing in changed if thing.after]
+        changed = []
     rows, boxes = ray_instances(resting)
     nodes, order = build_tree(boxes, 1)
     changed_rows, _ = ray_instances(changed)

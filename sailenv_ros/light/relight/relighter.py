@@ -13,15 +13,13 @@ from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sailenv_ros.light.relight.baked_rows import BakedRows, baked_rows, has_shape_of
 from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.change_follower import ChangeFollower
 from sailenv_ros.light.relight.object_lights import ObjectLights, can_be_lit
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.types.baked_light import BakedLight, ObjectLight
 from sailenv_ros.types.model import Model
@@ -34,13 +32,12 @@ _log = logging.getLogger(__name__)
 REST_NS = 500_000_000
 """Simulated time for which everything must stand still before light is refined within a frame."""
 
-STILL_NS, STILL_FRAMES = 250_000_000, 5
-"""Time, or number of frames, after which an object that moved twice is at rest again, in real
-time."""
-
 READY_FRAMES = 3
 """Number of rendered frames after which a lockstep scene is prepared for moves; a program that
 renders fewer does not pay for it."""
+
+_Shown = tuple[object, ...]
+"""Key of shadows: the light, changes, and places of objects that rest."""
 
 _Key = tuple[tuple[int, bytes | None, object], ...]
 
@@ -53,25 +50,6 @@ class _Relit:
     light: BakedLight
     refined: bool
     since_ns: int
-
-
-@dataclass(eq=False, slots=True)
-class _Place:
-    """Last known place of an object."""
-
-    pose: bytes
-    moved_ns: int
-    frames: int = 0
-    in_motion: bool = False
-
-    def follow(self, pose: bytes, now_ns: int) -> None:
-        """Take in where it is now: what moves twice in a row is in motion until it rests."""
-        recent = self.frames < STILL_FRAMES and 0 <= now_ns - self.moved_ns < STILL_NS
-        if pose != self.pose:
-            self.pose, self.moved_ns, self.frames, self.in_motion = pose, now_ns, 0, recent
-            return
-        self.frames += 1
-        self.in_motion = self.in_motion and recent
 
 
 class Relighter:
@@ -88,19 +66,22 @@ class Relighter:
         self.beforehand = True
         self._pool: ThreadPoolExecutor | None = None
         self._refining: tuple[_Key, Future[BakedLight]] | None = None
-        self._preparing: Future[BakedScene] | None = None
+        self._preparing: Future[tuple[BakedScene, ShownShadows]] | None = None
         self._rendered = 0
         self._original: SceneContents | None = None
         self._scene: BakedScene | None = None
-        self._places: dict[int, _Place] = {}
-        self._of: BakedRows | None = None
+        self._follower: ChangeFollower | None = None
         self._light: _Relit | None = None
         self._seen: WorldSnapshot | None = None
         self._changes: list[Change] = []
         self._painted: dict[int, Model] = {}
         self._objects = ObjectLights()
         self._object_light: Mapping[int, ObjectLight] = {}
-        self._contents: tuple[SceneContents, BakedLight, SceneContents] | None = None
+        self._shadows: ShownShadows | None = None
+        self._shading: tuple[_Shown, Future[BakedLight]] | None = None
+        self._shaded: tuple[_Shown, BakedLight] | None = None
+        self._base: tuple[BakedLight, BakedLight] | None = None
+        self._contents: tuple[SceneContents, SceneContents] | None = None
 
     def watch(self, snapshot: WorldSnapshot) -> None:
         """Take a scene's bake to heart, before anything moves or goes."""
@@ -116,10 +97,12 @@ class Relighter:
             self._original = contents
         else:
             return
-        self._scene, self._light, self._seen, self._of = None, None, None, None
-        self._places, self._refining, self._changes, self._painted = {}, None, [], {}
+        self._scene, self._light, self._seen, self._refining = None, None, None, None
+        self._changes, self._painted = [], {}
+        self._follower = None if self._original is None else ChangeFollower(self._original)
         self._preparing, self._rendered = None, 0
         self._objects, self._object_light = ObjectLights(), {}
+        self._shadows, self._shading, self._shaded = None, None, None
 
     def lit(
         self,
@@ -157,16 +140,19 @@ class Relighter:
                 )
             self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
             self._object_light = self._light_on_objects(snapshot, lockstep=lockstep)
+        contents = snapshot.contents
+        assert contents.baked is not None
+        known = self._contents is not None and self._contents[0] is contents
+        if wanted or not known:
+            shown = self._without_shadows(contents.baked, lockstep=lockstep)
+            if wanted and self._object_light:
+                shown = self._with_shadows(shown, lockstep=lockstep)
+            self._show(contents, shown)
+        assert self._contents is not None
         if self._object_light:
             snapshot = replace(snapshot, object_light=self._object_light)
-        if self._light is None:
-            return snapshot
-        contents, light = snapshot.contents, self._light.light
-        if self._contents is None or self._contents[:2] != (contents, light):
-            environment = None if contents.baked is None else contents.baked.environment
-            lit = replace(contents, baked=replace(light, environment=environment))
-            self._contents = contents, light, lit
-        return replace(snapshot, contents=self._contents[2])
+        lit = self._contents[1]
+        return snapshot if lit is contents else replace(snapshot, contents=lit)
 
     def close(self) -> None:
         """Wait for what is being computed; a second call does nothing."""
@@ -180,7 +166,9 @@ class Relighter:
         self, snapshot: WorldSnapshot, *, lockstep: bool, changed_ns: int | None
     ) -> None:
         if snapshot is not self._seen:
-            self._changes = self._changed(snapshot, lockstep=lockstep)
+            assert self._follower is not None
+            self._changes = self._follower.changes(snapshot, lockstep=lockstep)
+            self._painted = self._follower.painted
             self._seen = snapshot
         key = _key_of(self._changes, self._painted)
         if not key:
@@ -203,7 +191,51 @@ class Relighter:
         if (unprepared and not lockstep) or not any(map(can_be_lit, snapshot.contents.instances)):
             return {}
         scene, threads = self._prepared(), thread_count()
-        return self._objects.update(snapshot, scene, self._changes, threads=threads)
+        rough = self._light is not None and not self._light.refined
+        return self._objects.update(snapshot, scene, self._changes, rough=rough, threads=threads)
+
+    def _show(self, contents: SceneContents, light: BakedLight) -> None:
+        """Have contents of the world shown in a light; the same object while it is the same."""
+        if self._contents is None or self._contents[0] is not contents:
+            self._contents = contents, contents
+        if self._contents[1].baked is not light:
+            lit = contents if light is contents.baked else replace(contents, baked=light)
+            self._contents = contents, lit
+
+    def _without_shadows(self, baked: BakedLight, *, lockstep: bool) -> BakedLight:
+        """Return the light of what stands still, as it stands; `baked` is as the world has it."""
+        if self._light is None:
+            return baked
+        light = self._light.light
+        # In lockstep no picture depends on those before it.
+        rough = not lockstep and not self._light.refined
+        known = self._base
+        if known is None or known[0] is not light or known[1].environment is not baked.environment:
+            shown = replace(light, environment=baked.environment, rough=rough)
+            self._base = known = light, shown
+        return known[1]
+
+    def _with_shadows(self, light: BakedLight, *, lockstep: bool) -> BakedLight:
+        """Return light with the shadows of what rests; in real time those found last."""
+        shadows = self._shadows
+        assert shadows is not None
+        if self._light is not None and not self._light.refined:
+            # Until then the picture darkens what is near.
+            return light
+        rest = [thing for thing in self._objects.things if not thing.moves]
+        if lockstep:
+            return shadows.on(light, rest, self._changes, threads=thread_count())
+        if self._shading is not None and self._shading[1].done():
+            self._shaded = self._shading[0], self._shading[1].result()
+            self._shading = None
+        key = light, *(change.key for change in self._changes), *(thing.place for thing in rest)
+        if self._shaded is not None and self._shaded[0] == key:
+            return self._shaded[1]
+        if self._shading is None:
+            future = self._background().submit(shadows.on, light, rest, self._changes, threads=1)
+            self._shading = key, future
+        same = self._shaded is not None and self._shaded[0][0] is light
+        return self._shaded[1] if same and self._shaded is not None else light
 
     def _refine(self, shown: _Relit, snapshot: WorldSnapshot, *, lockstep: bool) -> None:
         if lockstep:
@@ -243,61 +275,11 @@ class Relighter:
             assert self._original is not None
             if self._preparing is None:
                 self._scene = _scene_of(self._original, thread_count())
+                self._shadows = ShownShadows(self._scene, self._objects.points)
             else:
-                self._scene = self._preparing.result()
+                self._scene, self._shadows = self._preparing.result()
                 self._preparing = None
         return self._scene
-
-    def _changed(self, snapshot: WorldSnapshot, *, lockstep: bool) -> list[Change]:
-        """Return what stands elsewhere than when the light was baked."""
-        original, contents = self._original, snapshot.contents
-        assert original is not None
-        assert original.baked is not None
-        if self._of is None or self._of.contents is not contents:
-            self._of = baked_rows(original, contents)
-            self._painted = self._repainted(contents)
-        of = self._of
-        changes: list[Change] = []
-        places: dict[int, _Place] = {}
-        # NaN is like nothing: what was not baked is among them.
-        moved = (snapshot.world_from_body[of.rows] != of.poses).any(axis=(1, 2))
-        for place_of in np.flatnonzero(moved).tolist():
-            row, id_ = int(of.rows[place_of]), of.ids[place_of]
-            pose = snapshot.world_from_body[row]
-            came = None
-            before: NDArray[np.float64] | None = of.poses[place_of]
-            if np.isnan(of.poses[place_of, 0, 0]):
-                drawn = contents.instances[row]
-                came, before = (drawn.model, drawn.scale), None
-            name, now_ns = pose.tobytes(), snapshot.sim_time_ns
-            place = places[id_] = self._places.get(id_) or _Place(name, now_ns)
-            place.follow(name, now_ns)
-            # In real time, what moves on is lit as things are that can move: at no cost.
-            after = None if place.in_motion and not lockstep else pose
-            if before is not None or after is not None:
-                changes.append(Change(id=id_, before=before, after=after, came=came))
-        self._places = places
-        changes += of.gone
-        charts = original.baked.charts
-        for change in [c for c in changes if c.came is not None and c.id in charts]:
-            # Another model or size in the place of what was baked.
-            gone = Change(id=change.id, before=charts[change.id].world_from_body, after=None)
-            changes.append(gone)
-        return changes
-
-    def _repainted(self, contents: SceneContents) -> dict[int, Model]:
-        """Return the models of what was baked and is of other materials now."""
-        assert self._original is not None
-        assert self._original.baked is not None
-        charts = self._original.baked.charts
-        known = {drawn.instance.id: drawn for drawn in self._original.instances}
-        return {
-            drawn.instance.id: drawn.model
-            for drawn in contents.instances
-            if drawn.instance.id in charts
-            and drawn.model is not known[drawn.instance.id].model
-            and has_shape_of(drawn, known[drawn.instance.id])
-        }
 
 
 def _scene_of(contents: SceneContents, threads: int) -> BakedScene:
@@ -307,11 +289,14 @@ def _scene_of(contents: SceneContents, threads: int) -> BakedScene:
 
 def _ready_scene(
     contents: SceneContents, snapshot: WorldSnapshot, objects: ObjectLights
-) -> BakedScene:
-    """Make a scene ready, and the light on what can move in it, which no frame waits for."""
+) -> tuple[BakedScene, ShownShadows]:
+    """Make a scene ready, and light and shadows of what can move, which no frame waits for."""
     scene = _scene_of(contents, 1)
     objects.update(snapshot, scene, (), threads=1)
-    return scene
+    shadows = ShownShadows(scene, objects.points)
+    rest = [thing for thing in objects.things if not thing.moves]
+    shadows.on(scene.baked, rest, (), threads=1)
+    return scene, shadows
 
 
 def _key_of(changes: list[Change], painted: dict[int, Model]) -> _Key:

@@ -19,6 +19,7 @@ from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere, low_discrepanc
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.light.relight.layer_updates import DirectDelta, LayerUpdates
+from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
 from sailenv_ros.light.relight.quality import Quality
 from sailenv_ros.light.relight.ray_world import ray_world
 from sailenv_ros.light.relight.scene_changes import Change
@@ -30,7 +31,6 @@ from sailenv_ros.native.relight_kernels import (
     light_of_probes,
     smooth_change,
 )
-from sailenv_ros.native.relight_types import MappedTexels, PatchMap
 from sailenv_ros.types.baked_light import BakedLight, LightChart
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Model
@@ -83,7 +83,11 @@ class _Relighting:
         self._lights = [layer.light for layer in self._layers]
         area = [(n, one) for n, one in enumerate(self._lights) if one and one.type == "area"]
         self._area, self._area_lights = [n for n, _ in area], [light for _, light in area]
-        self._move()
+        self._surfaces = surfaces = moved_surfaces(scene, changes)
+        self._positions, self._normals = surfaces.positions, surfaces.normals
+        self._patch_positions = surfaces.patch_positions
+        self._patch_normals = surfaces.patch_normals
+        self._wanted = surfaces.wanted
         self._bounces = quality.bounces if painted else 0
         self._far = quality.with_far or bool(painted)
         self._albedo, self._emission = scene.patches.albedo, scene.patches.emission
@@ -111,10 +115,10 @@ class _Relighting:
             wanted = np.where(found == 2, 2, self._wanted)
             found, change, area = self._gather(wanted, quality.rays)
         found_far, change, far, near = self._bounced(found, change, direct)
-        texels = MappedTexels(
-            self._scene.places, self._positions, self._normals, self._scene.owners
-        )
-        updates = LayerUpdates(self._layers, self._area, texels, self._patches(), self._threads)
+        updates = LayerUpdates(
+            self._layers, self._area, self._surfaces.texels(), self._surfaces.patches(),
+            self._threads,
+        )  # fmt: skip
         if quality.by_texels:
             layers = [
                 updates.with_direct(layer, deltas.get(number))
@@ -168,30 +172,6 @@ class _Relighting:
 
     # -- what is there -----------------------------------------------------------------------
 
-    def _move(self) -> None:
-        """Put the texels and patches of what moved to where they are now."""
-        scene, patches = self._scene, self._scene.patches
-        self._positions, self._normals = scene.positions, scene.normals
-        self._patch_positions, self._patch_normals = patches.positions, patches.normals
-        self._wanted = np.ones(len(patches.size), np.uint8)
-        moved = [change for change in self._changes if change.came is None]
-        if moved:
-            self._positions, self._normals = scene.positions.copy(), scene.normals.copy()
-            self._patch_positions = patches.positions.copy()
-            self._patch_normals = patches.normals.copy()
-        for change in moved:
-            own, own_patches = scene.owners == change.id, patches.owners == change.id
-            self._wanted[own_patches] = 0 if change.after is None else 2
-            if change.after is None:
-                continue
-            motion = change.after @ invert(scene.baked.charts[change.id].world_from_body)
-            for points, directions, chosen in (
-                (self._positions, self._normals, own),
-                (self._patch_positions, self._patch_normals, own_patches),
-            ):
-                points[chosen] = points[chosen] @ motion[:3, :3].T + motion[:3, 3]
-                directions[chosen] = directions[chosen] @ motion[:3, :3].T
-
     def _radiance_of_new(self, change: Change) -> Floats | None:
         """Return (C,) float32: what an object sends out that has no texels, by its colour."""
         if change.came is None or change.after is None:
@@ -237,19 +217,12 @@ class _Relighting:
         )  # fmt: skip
         # Both in one go: they share their neighbours.
         smooth_found, both = smooth_change(
-            self._patches(), self._quality.smoothing, found, nearness,
+            self._surfaces.patches(), self._quality.smoothing, found, nearness,
             np.concatenate([change, area], axis=1), threads=self._threads,
         )  # fmt: skip
         channels = change.shape[1]
         change, area = (np.ascontiguousarray(part) for part in np.split(both, [channels], axis=1))
         return smooth_found, change, area
-
-    def _patches(self) -> PatchMap:
-        patches = self._scene.patches
-        return PatchMap(
-            patches.of_map, patches.places, self._patch_positions, self._patch_normals,
-            patches.owners,
-        )  # fmt: skip
 
     def _take_area(self, direct: Floats, found: NDArray[np.uint8], area: Floats) -> None:
         for place, number in enumerate(self._area):

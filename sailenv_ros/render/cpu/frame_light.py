@@ -272,10 +272,10 @@ class FrameLight:
             texels = _sky_texels(sky, AS_IT_IS)
             _set_sky(light, texels)
         if alone is None:
-            composited = composite_lightmap(contents.baked, (), contents.environment)
+            composited = composite_lightmap(contents.baked.of_still, (), contents.environment)
         else:
             is_main = main is not None and alone.name == main.name
-            composited = light_alone(contents.baked, alone, is_main=is_main)
+            composited = light_alone(contents.baked.of_still, alone, is_main=is_main)
             light["background_plain"], light["background"] = 1, 0.0
             if is_main:
                 light["main_colour"][0] = alone.power

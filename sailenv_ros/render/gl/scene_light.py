@@ -158,10 +158,10 @@ class SceneLight:
         assert contents.baked is not None
         environment, is_main = contents.environment, False
         if alone is None:
-            composited = composite_lightmap(contents.baked, (), environment)
+            composited = composite_lightmap(contents.baked.of_still, (), environment)
         else:
             is_main = main is not None and alone.name == main.name
-            composited = light_alone(contents.baked, alone, is_main=is_main)
+            composited = light_alone(contents.baked.of_still, alone, is_main=is_main)
             environment = replace(
                 environment, background="colour", background_colour=(0.0, 0.0, 0.0)
             )

@@ -21,7 +21,10 @@ from sailenv_ros.frame.lens_rays import tells_depth, unit_rays
 from sailenv_ros.native.picture_kernels import AmbientSettings, find_ambient_visibility
 from sailenv_ros.types.camera import CameraIntrinsics
 
-__all__ = ["PATTERN", "ambient_visibility", "kernel_settings"]
+__all__ = ["BAKED_LIGHT", "BAKED_SHADOW", "PATTERN", "ambient_visibility", "kernel_settings"]
+
+BAKED_LIGHT, BAKED_SHADOW = 1, 2
+"""Of an instance its light is known, or the shadow that it casts on what has such light."""
 
 TAPS = 12
 REACH_PX = 48
@@ -68,7 +71,7 @@ def ambient_visibility(
     *,
     strength: float,
     radius_m: float,
-    baked: NDArray[np.bool_],
+    known: NDArray[np.uint8],
     threads: int = 1,
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Compute the share of the light from around that arrives.
@@ -82,8 +85,9 @@ def ambient_visibility(
         0 to 1.
     radius_m : float
         How far away surfaces hide light from each other [m].
-    baked : (65536,) bool
-        By instance id: surfaces whose light was baked do not darken each other.
+    known : (65536,) uint8
+        By instance id, `BAKED_LIGHT` or `BAKED_SHADOW`: surfaces whose light was baked do not
+        darken each other, nor they and those whose shadow is in that light; 0 of others.
     threads : int
         The result does not depend on it.
 
@@ -98,7 +102,7 @@ def ambient_visibility(
     settings = kernel_settings(intrinsics, strength, radius_m)
     return find_ambient_visibility(
         surface,
-        baked,
+        known,
         intrinsics.lens_record,
         settings,
         PATTERN,

@@ -83,15 +83,13 @@ class PostPass:
         settings = camera.picture
         shade: tone_map.AmbientShade | None = None
         if settings.occlusion_strength > 0.0:
-            baked = np.zeros(65536, np.bool_)
-            baked[snapshot.contents.instance_ids[still]] = True
-            known = BESIDE_RAYS if snapshot.object_light else 1.0
+            strength = BESIDE_RAYS if snapshot.object_light else 1.0
             shade = ambient_occlusion.ambient_visibility(
                 surface,
                 camera.intrinsics,
-                strength=known * settings.occlusion_strength,
+                strength=strength * settings.occlusion_strength,
                 radius_m=settings.occlusion_radius_m,
-                baked=baked,
+                known=_known(snapshot, still),
                 threads=self._threads,
             )
         if settings.supersampling > 1:
@@ -164,6 +162,16 @@ class PostPass:
         if not (settings.lateral_colour or settings.vignetting or settings.dirt):
             return light
         return Light(through_lens(self.at_sensor(light), camera.intrinsics, settings))
+
+
+def _known(snapshot: WorldSnapshot, still: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """Return (65536,) uint8: what is known of each instance's light; see `ambient_visibility`."""
+    known = np.zeros(65536, np.uint8)
+    baked = snapshot.contents.baked
+    if baked is not None:
+        known[list(baked.casters)] = ambient_occlusion.BAKED_SHADOW
+    known[snapshot.contents.instance_ids[still]] = ambient_occlusion.BAKED_LIGHT
+    return known
 
 
 def _inside(surface: NDArray[np.float32], snapshot: WorldSnapshot) -> NDArray[np.bool_]:

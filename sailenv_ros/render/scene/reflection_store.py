@@ -59,7 +59,7 @@ def room_key(
         drawn = contents.instances[row]
         told = drawn.instance.id, drawn.scale, tuple(drawn.lit_by)
         digest.update(repr(told).encode() + _looks(drawn.model))
-    baked = contents.baked
+    baked = contents.baked.of_still
     light = baked.checksum or (id(baked.layers), id(baked.charts))
     return light, digest.digest(), points.tobytes()
 

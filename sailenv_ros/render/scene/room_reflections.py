@@ -106,7 +106,7 @@ class RoomReflections:
         main: Light | None,
         look: Look,
     ) -> None:
-        """Bring the maps up to date, when lights have changed.
+        """Bring the maps up to date, when lights have changed, or what is lit, but for a while.
 
         Parameters
         ----------
@@ -117,8 +117,10 @@ class RoomReflections:
         """
         contents = snapshot.contents
         assert contents.baked is not None
-        of = (contents.baked, contents.instance_ids[still].tobytes())
-        if self._of is None or self._of[0] is not of[0] or self._of[1] != of[1]:
+        of = (contents.baked.of_still, contents.instance_ids[still].tobytes())
+        waits = contents.baked.rough and self._of is not None
+        changed = self._of is None or self._of[0] is not of[0] or self._of[1] != of[1]
+        if changed and not waits:
             self._shares, self._of = {}, of
             self.points.choose(snapshot)
             if self._store is not None or self._drawn_by:
@@ -140,7 +142,8 @@ class RoomReflections:
                 wanted.append(((alone, light is main), alone, power))
         self._alone_of = alone_of
         shares = {
-            key: self._shares.get(key) or self._share(key, alone, look, snapshot)
+            key: self._shares.get(key)
+            or (self._seen(alone, look) if waits else self._share(key, alone, look, snapshot))
             for key, alone, _ in wanted
         }
         self._shares = shares
@@ -171,7 +174,7 @@ class RoomReflections:
         """Return the share that is on disk, if it can be."""
         contents = snapshot.contents
         assert contents.baked is not None
-        if not self._drawn_by or not contents.baked.checksum:
+        if not self._drawn_by or not contents.baked.of_still.checksum:
             return self._seen(alone, look)
         sky = contents.environment.sky
         told = replace(contents.environment, sky=None, exposure=0.0)

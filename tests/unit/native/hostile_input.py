@@ -199,8 +199,8 @@ def drive_rays() -> None:
 
 def drive_ambient_visibility() -> None:
     """Radii that are endless or none, depths that are no depths."""
-    baked = np.zeros(65536, np.bool_)
-    baked[0] = True
+    known = np.zeros(65536, np.uint8)
+    known[:2] = 1, 255
     plain = AmbientSettings(0.3, 1.5, 48.0, 0.08, 1.3, 0.03, 4)
     wild = AmbientSettings(np.inf, 1.5, 48.0, np.nan, 1e30, np.nan, 1)
     for surface in surfaces(*SIZES, LARGEST):
@@ -208,7 +208,7 @@ def drive_ambient_visibility() -> None:
         for lens, settings in ((PLAIN, plain),) if large else ((PLAIN, plain), (WILD, wild)):
             for parallel in (False, True):
                 find_ambient_visibility(
-                    *(surface, baked, lens, settings, PATTERN),
+                    *(surface, known, lens, settings, PATTERN),
                     parallel=parallel,
                     threads=THREADS[1],
                 )

@@ -88,17 +88,17 @@ def test_annotations_are_those_of_the_definition(size: tuple[int, int]) -> None:
 def test_ambient_visibility_is_that_of_the_definition(
     size: tuple[int, int], share_baked: float
 ) -> None:
-    """With some of the surfaces baked, with all and with none."""
+    """With some of the surfaces baked, with all and with none; of others some shadows are."""
     rng = np.random.default_rng(size)
     surface = blocky_surface(rng, *size)
-    baked = rng.random(65536) < share_baked
+    known = np.where(rng.random(65536) < share_baked, 1, rng.choice((0, 2), 65536)).astype(np.uint8)
     intrinsics = CameraIntrinsics(width=size[1], height=size[0])
     given = (intrinsics.lens_record, kernel_settings(intrinsics, 0.8, 0.6), PATTERN)
-    visibility, inverse = reference.find_ambient_visibility(surface, baked, *given, threads=1)
+    visibility, inverse = reference.find_ambient_visibility(surface, known, *given, threads=1)
     if share_baked == 0.0 and size[0] > 40:
         assert visibility.min() < 200
     for threads in THREADS:
-        got = picture_kernels.find_ambient_visibility(surface, baked, *given, threads=threads)
+        got = picture_kernels.find_ambient_visibility(surface, known, *given, threads=threads)
         np.testing.assert_array_equal(got[0], visibility)
         np.testing.assert_array_equal(got[1], inverse)
 
@@ -115,7 +115,7 @@ def test_pictures_are_those_of_the_definition(size: tuple[int, int], shaded: boo
     intrinsics = CameraIntrinsics(width=size[1], height=size[0])
     settings = kernel_settings(intrinsics, 1.0, 0.6)
     shade = reference.find_ambient_visibility(
-        *(surface, np.zeros(65536, np.bool_), intrinsics.lens_record, settings, PATTERN), threads=1
+        *(surface, np.zeros(65536, np.uint8), intrinsics.lens_record, settings, PATTERN), threads=1
     )
     given = (radiance, table, *(shade if shaded else (None, None)), surface)
     expected = reference.make_picture(*given, same_surface=0.04, threads=1)

@@ -93,6 +93,23 @@ def test_a_room_that_is_shown_again_is_not_looked_at_again() -> None:
     assert len(looked) == 3
 
 
+def test_light_that_is_refined_soon_mirrors_what_was_mirrored() -> None:
+    """A move's own frame looks at nothing again; the refined one does."""
+    looked: list[Light | None] = []
+
+    def look(light: Light | None, cameras: list[Camera]) -> list[NDArray[np.float32]]:
+        looked.append(light)
+        return [
+            np.ones((one.intrinsics.height, one.intrinsics.width, 3), np.float32) for one in cameras
+        ]
+
+    shown = RoomReflections(partial(blur_directions, threads=1), sum_texels)
+    for number, (rough, expected) in enumerate([(True, 1), (True, 1), (False, 2), (True, 2)]):
+        light = replace(baked({}, []), rough=rough)
+        shown.update(room(box(), light), STILL, None, look)
+        assert len(looked) == expected, number
+
+
 @pytest.mark.parametrize("checksum", ["", "of the light's file"])
 def test_shares_of_light_as_it_was_baked_are_kept_on_disk(
     checksum: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -10,7 +10,7 @@
     FIELD(int64_t, height)                                                               \
     FIELD(int64_t, width)                                                                \
     FIELD(const float*, surface) /* (H, W, 2): depth [m], id */                          \
-    FIELD(const uint8_t*, baked) /* (65536,) */                                          \
+    FIELD(const uint8_t*, known) /* (65536,): KnownLight of each instance */             \
     FIELD(const float*, pattern) /* (16, 2, TAPS) */                                     \
     FIELD(const sailenv::Lens*, lens)                                                    \
     FIELD(const float*, rays) /* (h, w, 3): rays of any length, and the surface holds */ \
@@ -37,6 +37,13 @@ constexpr int64_t MOST_STEP = 4;  // from one sample to the next of the second a
 constexpr int64_t PAD = 16;       // samples beyond both ends of a row that count as on no surface
 constexpr int64_t INSTANCES = 65536;
 
+// What is known of an instance's light.
+enum KnownLight : uint8_t {
+    LIGHT_UNKNOWN = 0,
+    LIGHT_BAKED = 1,
+    SHADOW_BAKED = 2,  // what it hides from what is baked, and that from it, is in their light
+};
+
 struct Settings {
     sailenv::FastLens lens;  // of the samples
     float radius_m;
@@ -48,7 +55,7 @@ struct Settings {
 struct Samples {
     int64_t rows, columns;
     float* inverse;        // (rows, columns): 1 / depth, negative where light was baked
-    float* depth;          // (rows, columns): 1 / inverse, with its sign
+    float* depth;          // (rows, columns): see told_depth
     const uint8_t* tiles;  // (tile rows, tile columns): 1 where something may be darkened
     int64_t tile_columns;
     const float* rays;  // (rows, columns, 3), or null
@@ -61,18 +68,29 @@ LANES_INLINE float ray_length(const Samples& s, int64_t place) {
     return __builtin_sqrtf(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
 }
 
-void halve_rows(const float* surface, int64_t width, const uint8_t* baked, const Samples& s,
+// A depth that is negative where it darkens nothing that was baked, and odd where that does not
+// darken it either.
+float told_depth(float depth, bool shadow_is_baked) {
+    uint32_t bits;
+    memcpy(&bits, &depth, sizeof bits);
+    bits = shadow_is_baked ? bits | 0x80000001U : bits & 0xfffffffeU;
+    memcpy(&depth, &bits, sizeof bits);
+    return depth;
+}
+
+void halve_rows(const float* surface, int64_t width, const uint8_t* known, const Samples& s,
                 uint8_t* own_tiles, int64_t first, int64_t last) {
     for (int64_t v = first; v < last; v++) {
         const float* row = surface + 4 * v * width;
         for (int64_t u = 0; u < s.columns; u++) {
             const float z = row[4 * u] / ray_length(s, v * s.columns + u), id = row[4 * u + 1];
             const bool hit = z > 1.0f / FAR_M && z < FAR_M;
-            const bool known = id >= 0.0f && id < INSTANCES;
-            const bool is_baked = hit && known && baked[static_cast<int32_t>(id)] != 0;
-            const float inverse = !hit ? -1.0f / FAR_M : (is_baked ? -1.0f : 1.0f) / z;
+            const bool has_id = hit && id >= 0.0f && id < INSTANCES;
+            uint8_t light = LIGHT_UNKNOWN;
+            if (has_id) light = known[static_cast<int32_t>(id)];
+            const float inverse = !hit ? -1.0f / FAR_M : (light == LIGHT_BAKED ? -1.0f : 1.0f) / z;
             s.inverse[v * s.columns + u] = inverse;
-            s.depth[v * s.columns + u] = 1.0f / inverse;
+            s.depth[v * s.columns + u] = told_depth(1.0f / inverse, light == SHADOW_BAKED);
             if (inverse > 0.0f) own_tiles[u / TILE] = 1;
         }
     }
@@ -169,6 +187,8 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             continue;
         }
         const f8 own = load_some(row + u, count);
+        const i8 own_moves = own > zero;
+        const i8 own_known = own_moves & (load_some(s.depth + v * s.columns + u, count) < zero);
         const f8 w = abs8(own);
         const f8 column = counting() + static_cast<float>(u);
         RayChanges rays;
@@ -269,7 +289,8 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             const f8 fall = max8(one - d2 * per_r2, zero);
             const f8 height_m = (level - (a * qx + b * qy + c * tz)) * plane_m;
             const f8 rise = height_m / sqrt8(d2) - set.bias;
-            const i8 counts = inside & ((own > zero) | (other > zero));
+            const i8 odd = (bits(other) & 1) != 0;
+            const i8 counts = inside & ((other > zero) | (own_moves & (~own_known | odd)));
             hidden = hidden + select8(counts, max8(rise, zero) * fall, zero);
         }
         // What hides light gives some of it back: no place is black.
@@ -376,7 +397,7 @@ SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
     const Samples samples{rows,        columns,      in.inverse, depth.get(),
                           tiles.get(), tile_columns, in.rays};
     sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t) {
-        halve_rows(in.surface, width, in.baked, samples, own + first / TILE * tile_columns, first,
+        halve_rows(in.surface, width, in.known, samples, own + first / TILE * tile_columns, first,
                    last);
     });
     const int64_t reach = static_cast<int64_t>(set.reach_px) / TILE;

@@ -19,14 +19,39 @@ static inline float scatter(uint32_t x) {
     return static_cast<float>(x >> 8) * (1.0f / 16777216.0f);
 }
 
+// Share of a light that something must be able to hide, by the balls around both.
+constexpr float LEAST_OF_LIGHT = 0.02f;
+
+// Things that change and count at a point; all do if they are too many.
+struct SeenChanges {
+    static constexpr int64_t MOST = 128;
+    const RayInstance* instance[MOST];
+    int64_t count = 0;
+
+    void add(const RayInstance& i) {
+        if (count < MOST) instance[count] = &i;
+        count++;
+    }
+};
+
+// Calls with each of them.
+template <class Use>
+static inline void for_each_seen(const RayScene& s, const SeenChanges& seen, const Use& use) {
+    if (seen.count > SeenChanges::MOST) {
+        for (int64_t k = 0; k < s.changed_count; k++) use(s.changed[k]);
+    } else {
+        for (int64_t k = 0; k < seen.count; k++) use(*seen.instance[k]);
+    }
+}
+
 // What a ray meets first, before and after; true if that is not the same.
-static inline bool meet_both(const RayScene& s, const Ray& r, Hit& before, Hit& after) {
-    for (int64_t k = 0; k < s.changed_count; k++) {
-        const RayInstance& i = s.changed[k];
-        if (!ray_passes_ball(i, r, ENDLESS)) continue;
+static inline bool meet_both(const RayScene& s, const SeenChanges& seen, const Ray& r, Hit& before,
+                             Hit& after) {
+    for_each_seen(s, seen, [&](const RayInstance& i) {
+        if (!ray_passes_ball(i, r, ENDLESS)) return;
         if (i.before) meet_instance(i, r, before);
         if (i.after) meet_instance(i, r, after);
-    }
+    });
     if (before.triangle < 0 && after.triangle < 0) return false;
     Hit rest;
     meet_resting(s, r, rest);
@@ -51,23 +76,25 @@ struct Stopped {
     bool touched, before, after;
 };
 
-static inline Stopped stopped(const RayScene& s, const Ray& r, float length, bool whole) {
+static inline Stopped stopped(const RayScene& s, const SeenChanges& between, const Ray& r,
+                              float length, bool whole) {
     bool by_before = false, by_after = false;
-    for (int64_t k = 0; k < s.changed_count; k++) {
-        const RayInstance& i = s.changed[k];
-        if ((i.before ? by_before : true) && (i.after ? by_after : true)) continue;
-        if (!ray_passes_ball(i, r, length) || !instance_occludes(i, r, length)) continue;
+    for_each_seen(s, between, [&](const RayInstance& i) {
+        if ((i.before ? by_before : true) && (i.after ? by_after : true)) return;
+        if (!ray_passes_ball(i, r, length) || !instance_occludes(i, r, length)) return;
         by_before |= i.before != 0;
         by_after |= i.after != 0;
-    }
+    });
     if (!whole && !by_before && !by_after) return {false, false, false};
     const bool rest = (by_before && by_after) ? true : resting_occlude(s, r, length);
     return {by_before != by_after && !rest, by_before || rest, by_after || rest};
 }
 
-// Whether anything that changes may come between a point and a light.
-static inline bool comes_between(const RayScene& s, const RayLight& l, const float* p,
-                                 const float* n) {
+// Which things that change may come between a point, or one so far beside it, and a light, and take
+// more than a little of its light.
+static inline SeenChanges between(const RayScene& s, const RayLight& l, const float* p,
+                                  const float* n, float beside = 0.0f) {
+    SeenChanges found;
     const bool far = l.lamp.kind == LIGHT_DIRECTIONAL;
     float towards[3], square = 0.0f;
     for (int c = 0; c < 3; c++) {
@@ -75,13 +102,26 @@ static inline bool comes_between(const RayScene& s, const RayLight& l, const flo
         square += l.across[c] * l.across[c] + l.up[c] * l.up[c];
     }
     const float reach_of = 0.5f * std::sqrt(square) + (far ? 0.0f : l.radius);
-    if (dot(towards, n) < -reach_of) return false;
+    if (dot(towards, n) < -reach_of - beside) return found;
     const Ray r = ray_of(p, towards);
-    const float length = far ? ENDLESS : 1.0f;
+    const float way = std::sqrt(std::max(dot(towards, towards), 1e-12f));
     for (int64_t k = 0; k < s.changed_count; k++) {
-        if (ray_passes_ball(s.changed[k], r, length, reach_of)) return true;
+        const float* ball = s.changed[k].sphere;
+        float margin = beside + (far ? reach_of : 0.0f);
+        if (!far) {
+            // The rays to all of the light are a cone.
+            const float to[3] = {ball[0] - p[0], ball[1] - p[1], ball[2] - p[2]};
+            const float along = (dot(to, towards) / way + 1.2f * ball[3] + beside) / way;
+            margin += reach_of * std::min(std::max(along, 0.0f), 1.0f);
+            const float away = std::max(std::sqrt(dot(to, to)) - beside, 0.0f);
+            const float seen = ball[3] * way, light = reach_of * away;
+            if (seen * seen < LEAST_OF_LIGHT * light * light) continue;
+        }
+        if (ray_passes_ball(s.changed[k], r, far ? ENDLESS : 1.0f, margin)) {
+            found.add(s.changed[k]);
+        }
     }
-    return false;
+    return found;
 }
 
 // What changes of the direct light of a lamp at a point.
@@ -92,8 +132,8 @@ struct DirectLightDelta {
 };
 
 // `whole`: all of the light is wanted, whatever changed.
-static inline DirectLightDelta direct_light_delta(const RayScene& s, const RayLight& l,
-                                                  const float* p, const float* n,
+static inline DirectLightDelta direct_light_delta(const RayScene& s, const SeenChanges& between,
+                                                  const RayLight& l, const float* p, const float* n,
                                                   const float* pattern, int64_t rays,
                                                   uint32_t number, bool whole) {
     DirectLightDelta result = {0.0f, 0.0f, 0.0f, 0.0f, false};
@@ -110,7 +150,7 @@ static inline DirectLightDelta direct_light_delta(const RayScene& s, const RayLi
         if (!(power > 0.0f)) continue;
         unhindered += power;
         const Ray r = ray_of(o, light.towards);
-        const Stopped way = stopped(s, r, light.length, whole);
+        const Stopped way = stopped(s, between, r, light.length, whole);
         result.touched |= way.touched;
         const float freed = static_cast<float>(way.before) - static_cast<float>(way.after);
         if (freed == 0.0f && (!whole || way.after)) continue;

@@ -14,6 +14,10 @@ namespace {
 
 constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 
+// A point that something which changes covers: it takes so much of the view, so near.
+constexpr double COVERED = 0.95;
+constexpr float COVERED_M = 0.015f;
+
 // Adds what a ray sees, times `weight`, to `sum`; false if that is the back of a surface.
 bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* table, float weight,
               float* sum) {
@@ -44,17 +48,33 @@ bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* tabl
     return true;
 }
 
-// The largest share of a hemisphere that things which change may take, seen from a point.
-float reach(const RayScene& s, const float* p, const float* n) {
+// The largest share of a hemisphere that something may take, seen from a point, or from one so far
+// beside it.
+float reach_of(const RayInstance& i, const float* p, const float* n, float beside) {
+    const float* ball = i.sphere;
+    const float to[3] = {ball[0] - p[0], ball[1] - p[1], ball[2] - p[2]};
+    if (dot(to, n) < -ball[3]) return 0.0f;
+    const float away = std::max(std::sqrt(dot(to, to)) - beside, 0.0f);
+    return ball[3] * ball[3] / std::max(away * away, 1e-6f);
+}
+
+// The largest share of a hemisphere that things which change may take, seen from a point, or from
+// one so far beside it.
+float reach(const RayScene& s, const float* p, const float* n, float beside) {
     float most = 0.0f;
     for (int64_t k = 0; k < s.changed_count; k++) {
-        const float* ball = s.changed[k].sphere;
-        const float to[3] = {ball[0] - p[0], ball[1] - p[1], ball[2] - p[2]};
-        if (dot(to, n) < -ball[3]) continue;
-        const float d2 = dot(to, to);
-        most = std::max(most, ball[3] * ball[3] / std::max(d2, 1e-6f));
+        most = std::max(most, reach_of(s.changed[k], p, n, beside));
     }
     return most;
+}
+
+// Which things that change may take a share of the view of more than `least` each.
+SeenChanges seen_changes(const RayScene& s, const float* p, const float* n, float least) {
+    SeenChanges seen;
+    for (int64_t k = 0; k < s.changed_count; k++) {
+        if (reach_of(s.changed[k], p, n, 0.0f) > least) seen.add(s.changed[k]);
+    }
+    return seen;
 }
 
 // What one patch gets by way of surfaces and from the sky.
@@ -104,26 +124,30 @@ Gathered gather_whole(const RayScene& s, const CosineRays& rays, const PatchQuer
 }
 
 // The change; or all of the light, where little of what was baked is of use.
-Gathered gather_difference(const RayScene& s, const CosineRays& rays, const PatchQuery& q,
-                           float* sum) {
+Gathered gather_difference(const RayScene& s, const SeenChanges& seen, const CosineRays& rays,
+                           const PatchQuery& q, float* sum) {
     const float each = 1.0f / static_cast<float>(q.rays);
-    int64_t changed = 0;
+    int64_t changed = 0, backs = 0;
     float near = 0.0f;
     for (int64_t m = 0; m < q.rays; m++) {
         const Ray r = rays.ray(q.pattern + 2 * m);
         Hit before, after;
-        if (!meet_both(s, r, before, after)) continue;
+        if (!meet_both(s, seen, r, before, after)) continue;
         changed++;
         near += nearness_of(std::min(before.t, after.t));
         add_seen(s, before, r, s.before, -each, sum);
-        add_seen(s, after, r, s.after, each, sum);
+        backs += !add_seen(s, after, r, s.after, each, sum);
     }
-    if (4 * changed > q.rays) {
+    const double count = static_cast<double>(q.rays);
+    if (static_cast<double>(changed) > q.most_changed * count) {
         memset(sum, 0, static_cast<size_t>(s.channels) * sizeof(float));
         return gather_whole(s, rays, q, sum);
     }
     if (changed == 0) return {PATCH_AS_IT_WAS, FAR_M};
-    return {PATCH_CHANGED, static_cast<float>(changed) / near};
+    const float nearness = static_cast<float>(changed) / near;
+    const bool covered = static_cast<double>(changed) > COVERED * count && nearness < COVERED_M;
+    const bool inside = static_cast<double>(backs) > q.inside_share * count;
+    return {inside || covered ? PATCH_INSIDE : PATCH_CHANGED, nearness};
 }
 
 // Everything that is wanted of the k-th patch.
@@ -135,21 +159,25 @@ void gather_patch(const RayScene& s, const PatchQuery& q, int64_t k, const Patch
     result.found[k] = PATCH_AS_IT_WAS;
     result.nearness[k] = FAR_M;
     if (q.wanted[k] == PATCH_AS_IT_WAS) return;
-    const uint32_t number = static_cast<uint32_t>(k);
+    const uint32_t number = q.numbers[k];
     Gathered own = {PATCH_AS_IT_WAS, FAR_M};
     if (q.wanted[k] == PATCH_WHOLE) {
         own = gather_whole(s, CosineRays(p, n, number), q, bounced);
-    } else if (reach(s, p, n) > static_cast<float>(q.least)) {
-        own = gather_difference(s, CosineRays(p, n, number), q, bounced);
+    } else {
+        const SeenChanges seen = seen_changes(s, p, n, static_cast<float>(q.least));
+        if (seen.count > 0) {
+            own = gather_difference(s, seen, CosineRays(p, n, number), q, bounced);
+        }
     }
     result.found[k] = own.state;
     result.nearness[k] = own.nearness;
     if (own.state == PATCH_INSIDE) return;
     const bool whole = own.state == PATCH_WHOLE;
     for (int64_t l = 0; l < q.light_count; l++) {
-        if (!whole && !comes_between(s, q.lights[l], p, n)) continue;
+        const SeenChanges way = between(s, q.lights[l], p, n);
+        if (!whole && way.count == 0) continue;
         const DirectLightDelta delta =
-            direct_light_delta(s, q.lights[l], p, n, q.shot_pattern, q.shots, number, whole);
+            direct_light_delta(s, way, q.lights[l], p, n, q.shot_pattern, q.shots, number, whole);
         direct[l] = whole ? delta.total : delta.change;
         if (delta.touched && result.found[k] == PATCH_AS_IT_WAS) result.found[k] = PATCH_CHANGED;
     }
@@ -173,6 +201,29 @@ SAILENV_KERNEL(gather_change)
     return STATUS_OK;
 }
 
+// Which points may get other light by what changes: `found` becomes 1 where it may take a share of
+// the view of more than `least`, else 2 where it may come between the point and one of the lights,
+// else 0. What is within the point's margin of either counts.
+SAILENV_KERNEL(reached_points)
+(int64_t threads, const sailenv::RayScene* scene, int64_t count, const float* positions,
+ const float* normals, const float* margins, double least, int64_t light_count,
+ const sailenv::RayLight* lights, uint8_t* found) {
+    using namespace sailenv;
+    const RayScene& s = *scene;
+    if (count < 0 || light_count < 0 || !sound(s)) return STATUS_INVALID_ARGUMENT;
+    parallel_for(threads, count, 1024, [&](int64_t first, int64_t last, int64_t) {
+        for (int64_t k = first; k < last; k++) {
+            const float *p = positions + 3 * k, *n = normals + 3 * k;
+            const float beyond = margins[k];
+            found[k] = reach(s, p, n, beyond) > static_cast<float>(least) ? 1 : 0;
+            for (int64_t l = 0; l < light_count && found[k] == 0; l++) {
+                if (between(s, lights[l], p, n, beyond).count > 0) found[k] = 2;
+            }
+        }
+    });
+    return STATUS_OK;
+}
+
 // What changes at points in the air; see LightLayer.probe_bounced. Result: far, near: (count, 4,
 // channels): what rays bring that meet the same surface as before, and what the others do; far
 // stays 0 if it is not wanted, which saves nearly all the work.
@@ -184,6 +235,8 @@ SAILENV_KERNEL(gather_probe_change)
     if (count < 0 || rays < 1 || !sound(s)) return STATUS_INVALID_ARGUMENT;
     const float each = 1.0f / static_cast<float>(rays);
     const size_t row = 4 * static_cast<size_t>(s.channels);
+    SeenChanges all;
+    all.count = SeenChanges::MOST + 1;
     parallel_for(threads, count, 8, [&](int64_t first, int64_t last, int64_t) {
         for (int64_t k = first; k < last; k++) {
             memset(far + k * 4 * s.channels, 0, row * sizeof(float));
@@ -192,7 +245,7 @@ SAILENV_KERNEL(gather_probe_change)
                 const float* d = directions + 3 * m;
                 const Ray r = ray_of(positions + 3 * k, d);
                 Hit before, after;
-                const bool differs = meet_both(s, r, before, after);
+                const bool differs = meet_both(s, all, r, before, after);
                 if (!differs) {
                     if (with_far == 0) continue;
                     before = Hit();
@@ -214,13 +267,15 @@ SAILENV_KERNEL(gather_probe_change)
 
 // What changes of a lamp's or the sun's direct light at texels.
 //
-// positions, normals: (count, 3); patch: (count,); wanted: (patches,) as `found` of gather_change.
+// positions, normals: (count, 3); patch: (count,); numbers: (count,), seeds of random numbers;
+// wanted: (patches,) as `found` of gather_change.
 // Result: state: (count,), 0 as it was, 1 the change, 2 all of it; direct: irradiance / pi; share:
 // of the light that arrives.
 SAILENV_KERNEL(direct_light_delta)
 (int64_t threads, const sailenv::RayScene* scene, const sailenv::RayLight* light, int64_t count,
- const float* positions, const float* normals, const int32_t* patch, const uint8_t* wanted,
- int64_t rays, const float* pattern, uint8_t* state, float* direct, float* share) {
+ const float* positions, const float* normals, const int32_t* patch, const uint32_t* numbers,
+ const uint8_t* wanted, int64_t rays, const float* pattern, uint8_t* state, float* direct,
+ float* share) {
     using namespace sailenv;
     const RayScene& s = *scene;
     const RayLight& l = *light;
@@ -232,9 +287,10 @@ SAILENV_KERNEL(direct_light_delta)
             const int32_t own = patch[k];
             const bool whole = own >= 0 && own < s.patch_count && wanted[own] == PATCH_WHOLE;
             if (own >= 0 && own < s.patch_count && wanted[own] == PATCH_INSIDE) continue;
-            if (!whole && !comes_between(s, l, p, n)) continue;
+            const SeenChanges in_the_way = between(s, l, p, n);
+            if (!whole && in_the_way.count == 0) continue;
             const DirectLightDelta way =
-                direct_light_delta(s, l, p, n, pattern, rays, static_cast<uint32_t>(k), whole);
+                direct_light_delta(s, in_the_way, l, p, n, pattern, rays, numbers[k], whole);
             if (!whole && !way.touched) continue;
             state[k] = whole ? PATCH_WHOLE : PATCH_CHANGED;
             direct[k] = whole ? way.total : way.change;

@@ -174,16 +174,18 @@ SAILENV_KERNEL(spread_change)
 }
 
 // Averages what was found at patches over those around them, over less where other things are
-// near: there light changes quickly. Patches whose light was worked out anew and others are kept
-// apart. found, nearness: (patches,); change: (patches, channels). Result: smooth_found and smooth,
-// likewise.
+// near to either: there light changes quickly. Neighbours are `step` texels apart. Patches whose
+// light was worked out anew and others are kept apart. found, nearness: (patches,); change:
+// (patches, channels). Result: smooth_found and smooth, likewise.
 SAILENV_KERNEL(smooth_change)
-(int64_t threads, const sailenv::PatchMap* patches, int64_t radius, const uint8_t* found,
- const float* nearness, int64_t channels, const float* change, uint8_t* smooth_found,
- float* smooth) {
+(int64_t threads, const sailenv::PatchMap* patches, int64_t radius, int64_t step,
+ const uint8_t* found, const float* nearness, int64_t channels, const float* change,
+ uint8_t* smooth_found, float* smooth) {
     using namespace sailenv;
     const PatchMap& map = *patches;
-    if (!sound(map) || radius < 0 || radius > 8 || channels < 1) return STATUS_INVALID_ARGUMENT;
+    if (!sound(map) || radius < 0 || radius > 8 || step < 1 || step > 4 || channels < 1) {
+        return STATUS_INVALID_ARGUMENT;
+    }
     const std::unique_ptr<FoundTiles> tiles = found_tiles(map, found, radius);
     if (!tiles) return STATUS_OUT_OF_MEMORY;
     parallel_for(threads, map.count, 256, [&](int64_t first, int64_t last, int64_t) {
@@ -192,7 +194,6 @@ SAILENV_KERNEL(smooth_change)
             std::fill_n(out, channels, 0.0f);
             smooth_found[k] = found[k];
             if (found[k] == PATCH_INSIDE) continue;
-            const float near = std::max(nearness[k], 0.02f), scale = 2.0f / (near * near);
             const int32_t x = static_cast<int32_t>(map.places[2 * k]);
             const int32_t y = static_cast<int32_t>(map.places[2 * k + 1]);
             if (!tiles->has(x, y)) continue;
@@ -202,14 +203,16 @@ SAILENV_KERNEL(smooth_change)
             int64_t before = -1;
             for (int64_t dy = -radius; dy <= radius; dy++) {
                 for (int64_t dx = -radius; dx <= radius; dx++) {
-                    const int64_t q = patch_at(map, x + 4 * dx, y + 4 * dy);
+                    const int64_t q = patch_at(map, x + step * dx, y + step * dy);
                     if (q < 0 || q == before || map.owners[q] != map.owners[k]) continue;
                     if (found[q] == PATCH_INSIDE || (found[q] == PATCH_WHOLE) != whole) continue;
                     const Offset o = offset_of(map, q, map.positions + 3 * k, map.normals + 3 * k);
                     const bool elsewhere = o.alike < 0.8f || o.far2 > 0.25f;
                     if (q != k && (elsewhere || o.off * o.off > 0.1f * o.far2 + 1e-6f)) continue;
                     before = q;
-                    const float w = o.alike * std::exp(-o.far2 * scale);
+                    // What lies under something says nothing of what lies beside it.
+                    const float near = std::max(std::min(nearness[k], nearness[q]), 0.02f);
+                    const float w = o.alike * std::exp(-2.0f * o.far2 / (near * near));
                     total += w;
                     touched |= found[q] != PATCH_AS_IT_WAS;
                     const float* value = change + q * channels;

@@ -41,11 +41,13 @@ struct PatchQuery {
     const float* positions;     // (count, 3), world
     const float* normals;       // (count, 3)
     const uint8_t* wanted;      // (count,): PATCH_AS_IT_WAS (nothing), PATCH_CHANGED, PATCH_WHOLE
+    const uint32_t* numbers;    // (count,): seeds of their random numbers
     const float* pattern;       // (rays, 2), points of the unit square
     const RayLight* lights;     // (light_count,): area lights
     const float* shot_pattern;  // (shots, 2), for rays to each of them
     int64_t count, rays, light_count, shots;
     double least;         // share of a view that changed things must be able to take
+    double most_changed;  // share of rays; where more meet a change, all of the light is gathered
     double inside_share;  // of backs that are seen; a patch that sees more lies inside of something
 };
 

@@ -8,45 +8,24 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.light.relight import object_lights as module
-from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
 from sailenv_ros.light.relight.object_lights import ObjectLights, movable_objects
 from sailenv_ros.light.relight.quality import FINE
 from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.lights import Environment, Light
-from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import WorldSnapshot
-from tests.support.bake_scenes import COARSE, DARK, ground
-from tests.support.tiny_scenes import Thing, box_mesh, model_of, snapshot_of
-
-BLACK = (0.0, 0.0, 0.0, 1.0)
-FLOOR = ground(2.0, base_colour=BLACK)
-BOX = model_of(box_mesh(0.2), base_colour=BLACK)
-WHITE_SKY = Environment(background="colour", background_colour=(0.8, 0.8, 0.8))
-LAMP = Light(name="lamp", type="point", position_m=(0.0, 0.0, 2.0))
-IN_THE_AIR = Pose((0.0, 0.0, 1.0))
-
-
-def room(
-    *things: tuple[Model, Pose], environment: Environment = DARK, lights: tuple[Light, ...] = ()
-) -> WorldSnapshot:
-    """A small dark floor that stands still, with its light, and things that can move."""
-    every = [Thing(FLOOR), *(Thing(model, pose) for model, pose in things)]
-    snapshot = snapshot_of(every, environment=environment, lights=lights)
-    contents = snapshot.contents
-    first, *others = contents.instances
-    still = replace(first, instance=replace(first.instance, static=True))
-    snapshot = replace(snapshot, contents=replace(contents, instances=(still, *others)))
-    light = bake(snapshot, settings=COARSE)
-    return replace(snapshot, contents=replace(snapshot.contents, baked=light))
-
-
-def scene_of(snapshot: WorldSnapshot) -> BakedScene:
-    assert snapshot.contents.baked is not None
-    return BakedScene(snapshot.contents.baked, snapshot.contents, 1)
+from tests.support.movable_boxes import (
+    BLACK,
+    BOX,
+    IN_THE_AIR,
+    LAMP,
+    WHITE_SKY,
+    moved,
+    room,
+    scene_of,
+)
+from tests.support.tiny_scenes import box_mesh, model_of
 
 
 def light_on(snapshot: WorldSnapshot, which: int = 0) -> ObjectLight:
@@ -62,13 +41,6 @@ def value(terms: NDArray[np.float32], normal: tuple[float, ...], point: tuple[fl
     x, y, z = normal
     basis = [1, x, y, z, x * y, y * z, z * x, x * x - y * y, 3 * z * z - 1, *point]
     return float(np.dot(basis, terms))
-
-
-def moved(snapshot: WorldSnapshot, row: int, x: float) -> WorldSnapshot:
-    """A thing at another place."""
-    poses = snapshot.world_from_body.copy()
-    poses[row, 0, 3] = x
-    return replace(snapshot, world_from_body=poses)
 
 
 def test_in_an_even_sky_every_side_has_the_sky_light() -> None:

@@ -1,0 +1,301 @@
+"""Shadows of what can move on what was baked, and the light that it gives back.
+
+Rays from patches of the light map meet what can move, or do not: the difference is added to what
+was baked. Where things are near or a lamp's shadow falls, each texel casts rays of its own. What
+the main light gives straight is left as it is: its shadow map has what can move.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.bake.light_shapes import light_record
+from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
+from sailenv_ros.light.bake.settings import INSIDE_SHARE
+from sailenv_ros.light.relight.moved_surfaces import MovedSurfaces
+from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject
+from sailenv_ros.light.relight.quality import FINE
+from sailenv_ros.light.relight.ray_world import RayWorld
+from sailenv_ros.light.relight.shadow_maps import (
+    INSIDE,
+    PointChanges,
+    ShadowMaps,
+    with_neighbours,
+)
+from sailenv_ros.native.ray_types import RAY_LIGHT
+from sailenv_ros.native.relight_kernels import (
+    direct_light_delta,
+    gather_change,
+    reached_points,
+)
+from sailenv_ros.types.baked_light import BakedLight
+
+__all__ = ["ObjectShadows"]
+
+Floats = NDArray[np.float32]
+
+CHANGED, WHOLE = 1, 2
+"""States of points: their light is another one, or is to be found again."""
+
+LEAST = 0.02
+"""Objects that may take less of a patch's view than this share change nothing there."""
+
+NEAR = 11.0
+"""Where what hides light is farther than so many times its texels lie from the middle of a patch,
+the patch is fine enough."""
+
+TOUCHING = 4.0
+"""Where it is nearer than so many times that, light changes so quickly that only many rays tell it
+without noise."""
+
+LEAST_DIRECT, LEAST_SOFT = 0.02, 0.1
+"""Shares of what small lamps, and area lights, give a patch below which no edges of their shadows
+are seen."""
+
+
+class ObjectShadows:
+    """Shadows in a scene whose furniture stands where it stands.
+
+    Parameters
+    ----------
+    lighting : ObjectLighting
+    surfaces : MovedSurfaces
+        Of the same scene and changes.
+    """
+
+    def __init__(self, lighting: ObjectLighting, surfaces: MovedSurfaces) -> None:
+        self._lighting, self._surfaces, self._threads = lighting, surfaces, 1
+        scene = surfaces.scene
+        lights = [layer.light for layer in scene.baked.layers]
+        lamps = [(n, one) for n, one in enumerate(lights) if one and one.type != "directional"]
+        # As kernels return them: area lights first.
+        lamps.sort(key=lambda lamp: lamp[1].type != "area")
+        self._records = {n: light_record(light) for n, light in lamps}
+        self._areas = [n for n, light in lamps if light.type == "area"]
+        self._lamps = [n for n, light in lamps if light.type != "area"]
+        columns = 3 * len(lights) + len(self._records)
+        patches = len(scene.patches.size)
+        self._patches = PointChanges.none(patches, columns)
+        away = scene.positions - scene.patches.positions[scene.patches.of_texel]
+        far = np.linalg.norm(away, axis=1)
+        self._size, self._margin = scene.patches.means(far), np.zeros(patches, np.float32)
+        np.maximum.at(self._margin, scene.patches.of_texel, far)
+        self._texels = np.zeros(0, np.intp)
+        self._at_texels = PointChanges.none(0, columns)
+        self._things: dict[int, tuple[object, PlacedObject]] = {}
+        self._maps = ShadowMaps(surfaces, len(self._lamps))
+
+    @property
+    def casters(self) -> frozenset[int]:
+        """Ids of the objects whose shadows are known."""
+        return frozenset(self._things)
+
+    def update(self, things: Mapping[int, tuple[object, PlacedObject]], threads: int) -> bool:
+        """Find the shadows of objects where they are now; return whether any has changed.
+
+        Parameters
+        ----------
+        things : mapping of int to tuple
+            By id; what tells an object's places apart, and the object.
+        threads : int
+            No result depends on it.
+        """
+        before = self._things
+        left = [before[id_][1] for id_, (key, _) in before.items() if _key(things, id_) != key]
+        taken = [thing for id_, (key, thing) in things.items() if _key(before, id_) != key]
+        if not left and not taken:
+            return False
+        self._things, self._threads = dict(things), threads
+        self._find(self._may_change([*left, *taken]))
+        return True
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return what was found, for `take`."""
+        found = np.flatnonzero(self._patches.state).astype(np.int32)
+        patches = self._patches.at(found)
+        return {
+            "patches": found,
+            "texels": self._texels,
+            **{f"patch_{name}": array for name, array in patches._asdict().items()},
+            **{f"texel_{name}": array for name, array in self._at_texels._asdict().items()},
+        }
+
+    def take(
+        self,
+        things: Mapping[int, tuple[object, PlacedObject]],
+        arrays: Mapping[str, NDArray[Any]],
+        threads: int,
+    ) -> None:
+        """Take what was found of objects before, where none were known."""
+        self._things, self._threads = dict(things), threads
+        names = PointChanges._fields
+        self._patches.put(
+            arrays["patches"], PointChanges(*(arrays[f"patch_{name}"] for name in names))
+        )
+        self._texels = arrays["texels"]
+        self._at_texels = PointChanges(*(arrays[f"texel_{name}"] for name in names))
+
+    def with_changes(
+        self, lighting: ObjectLighting, surfaces: MovedSurfaces, near: Collection[int]
+    ) -> ObjectShadows:
+        """Return the shadows of the same objects where some furniture stands elsewhere.
+
+        Parameters
+        ----------
+        lighting : ObjectLighting
+        surfaces : MovedSurfaces
+            Of the scene with these changes.
+        near : collection of int
+            Ids of the objects near furniture that has changed: the shadows of others are the same.
+        """
+        changed = ObjectShadows(lighting, surfaces)
+        changed._things, changed._threads = self._things, self._threads
+        changed._texels, changed._at_texels = self._texels, self._at_texels
+        changed._patches = self._patches.copy()
+        every = [thing for _, thing in self._things.values()]
+        asked = changed._may_change(every) & (surfaces.wanted == WHOLE)
+        asked |= changed._may_change([self._things[id_][1] for id_ in near])
+        changed._find(asked)
+        return changed
+
+    def on(self, light: BakedLight) -> BakedLight:
+        """Return light of the same scene with the shadows in it."""
+        if not self._things:
+            return light
+        after = self._maps.on(
+            light, self._maps_of(light), self._patches, self._texels, self._at_texels, self._threads
+        )
+        bounced, direct = after[: len(light.layers)], after[len(light.layers) :]
+        of_layer = dict(zip(self._records, direct, strict=True))
+        layers = [
+            replace(layer, bounced=own, direct=of_layer.get(number, layer.direct))
+            for number, (layer, own) in enumerate(zip(light.layers, bounced, strict=True))
+        ]
+        return replace(
+            light, layers=tuple(layers), casters=self.casters, unshadowed=light, checksum=""
+        )
+
+    # -- inside --------------------------------------------------------------------------------
+
+    def _world_of(self, things: Sequence[PlacedObject]) -> RayWorld:
+        lighting = self._lighting
+        placed = [replace(lighting.placed(thing), before=False) for thing in things]
+        return lighting.world.with_more(placed)
+
+    def _may_change(self, things: Sequence[PlacedObject]) -> NDArray[np.bool_]:
+        """Return (P,) bool: the patches whose light objects may change."""
+        found = reached_points(
+            self._world_of(things).record, self._surfaces.patch_positions,
+            self._surfaces.patch_normals, self._margin,
+            _joined(self._records.values()), least=LEAST, threads=self._threads,
+        )  # fmt: skip
+        return (found > 0) & (self._surfaces.wanted > 0)
+
+    def _find(self, again: NDArray[np.bool_]) -> None:
+        """Find what changes at patches, and at the texels of those where that is not enough."""
+        surfaces, patches = self._surfaces, self._patches
+        every = [thing for _, (_, thing) in sorted(self._things.items())]
+        # Whether a patch is enough depends on those beside it, too.
+        again = with_neighbours(surfaces.scene, again)
+        self._maps.forget(again)
+        kept = ~again[surfaces.scene.patches.of_texel[self._texels]]
+        nothing = PointChanges.none(int(again.sum()), patches.change.shape[1])
+        patches.put(np.flatnonzero(again), nothing)
+        asked = np.flatnonzero(again & self._may_change(every))
+        world = self._world_of(every)
+        found = self._gathered(
+            world, surfaces.patch_positions, surfaces.patch_normals, asked, FINE.rays, 0
+        )
+        patches.put(asked, found)
+        uneven = asked[self._is_uneven(asked, found)]
+        # They say nothing of others.
+        patches.state[uneven] = INSIDE
+        touching = found.nearness < TOUCHING * self._size[asked]
+        near, far = (
+            self._texels_of(np.intersect1d(uneven, asked[chosen]))
+            for chosen in (touching, ~touching)
+        )
+        fresh = [
+            self._gathered(
+                world, surfaces.positions, surfaces.normals, own, rays, len(patches.state)
+            )
+            for own, rays in ((near, FINE.texel_rays), (far, FINE.rays))
+        ]
+        texels = np.concatenate([self._texels[kept], near, far])
+        order = np.argsort(texels)
+        self._texels = texels[order]
+        self._at_texels = self._at_texels.replaced(kept, fresh, order)
+
+    def _is_uneven(self, asked: NDArray[np.intp], found: PointChanges) -> NDArray[np.bool_]:
+        """Return where light changes within a patch."""
+        scene, change = self._surfaces.scene, self._patches.change
+        areas, lamps = np.split(
+            change[:, change.shape[1] - len(self._records) :], [len(self._areas)], 1
+        )
+        shadowed = _share(lamps, scene.direct[:, self._lamps]) > LEAST_DIRECT
+        shadowed = with_neighbours(scene, shadowed)
+        shadowed |= _share(areas, scene.direct[:, self._areas]) > LEAST_SOFT
+        near = (found.nearness < NEAR * self._size[asked]) | (found.state == INSIDE)
+        uneven: NDArray[np.bool_] = ((found.state > 0) & near) | shadowed[asked]
+        return uneven
+
+    def _texels_of(self, patches: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Return the texels of patches, in their order in the scene."""
+        chosen = np.zeros(len(self._patches.state), bool)
+        chosen[patches] = True
+        return np.flatnonzero(chosen[self._surfaces.scene.patches.of_texel])
+
+    def _gathered(
+        self,
+        world: RayWorld,
+        positions: Floats,
+        normals: Floats,
+        chosen: NDArray[np.integer],
+        rays: int,
+        first_number: int,
+    ) -> PointChanges:
+        """Gather what changes at chosen points."""
+        here, facing = positions[chosen], normals[chosen]
+        numbers = (chosen + first_number).astype(np.uint32)
+        count, threads = len(chosen), self._threads
+        state, bounced, areas, nearness = gather_change(
+            world.record, here, facing, np.full(count, CHANGED, np.uint8),
+            low_discrepancy_points(rays), _joined(self._records[n] for n in self._areas),
+            low_discrepancy_points(FINE.area_rays), LEAST, inside_share=INSIDE_SHARE,
+            most_changed=1.0, numbers=numbers, threads=threads,
+        )  # fmt: skip
+        columns = [bounced, areas]
+        nothing = np.zeros(len(self._patches.state), np.uint8)
+        for number in self._lamps:
+            touched, change, _ = direct_light_delta(
+                world.record, self._records[number], here, facing, np.zeros(count, np.int32),
+                nothing, low_discrepancy_points(FINE.light_rays), numbers=numbers, threads=threads,
+            )  # fmt: skip
+            columns.append(np.where(touched > 0, change, np.float32(0.0))[:, None])
+            state = np.where((state == 0) & (touched > 0), np.uint8(CHANGED), state)
+        return PointChanges(state, np.concatenate(columns, axis=1), nearness)
+
+    def _maps_of(self, light: BakedLight) -> list[NDArray[np.float16]]:
+        """Return the maps that shadows are in: bounced light, and direct light of some layers."""
+        layers = light.layers
+        return [layer.bounced for layer in layers] + [layers[n].direct for n in self._records]
+
+
+def _share(change: Floats, light: Floats) -> Floats:
+    """Return (P,) float32: how much changes of (P, N) lights of each patch."""
+    share: Floats = np.abs(change).sum(axis=1) / np.maximum(light.sum(axis=1), 1e-6)
+    return share
+
+
+def _key(things: Mapping[int, tuple[object, PlacedObject]], id_: int) -> object:
+    known = things.get(id_)
+    return None if known is None else known[0]
+
+
+def _joined(records: Iterable[NDArray[np.void]]) -> NDArray[np.void]:
+    return np.concatenate([np.zeros(0, RAY_LIGHT), *records])

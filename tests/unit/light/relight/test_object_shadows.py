@@ -1,0 +1,174 @@
+"""Shadows of what can move, against arithmetic, and what they depend on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from sailenv_ros.light.relight.object_light import SurfacePoints
+from sailenv_ros.light.relight.object_lights import movable_objects
+from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.light.relight.shown_shadows import ShownShadows
+from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.lights import Light
+from sailenv_ros.types.snapshot import WorldSnapshot
+from tests.support.movable_boxes import BLACK, BOX, LAMP, WHITE_SKY, moved, room, scene_of
+from tests.support.tiny_scenes import box_mesh, model_of
+
+BOARD = model_of(box_mesh((0.6, 0.4, 0.002)), base_colour=BLACK)
+ON_THE_FLOOR = Pose((0.0, 0.0, 0.101))
+SUN = Light(name="sun", type="directional", direction=(0.0, 0.0, -1.0))
+
+
+def shadowed(
+    snapshot: WorldSnapshot, changes: tuple[Change, ...] = (), threads: int = 1
+) -> BakedLight:
+    """The light of a scene with all shadows."""
+    scene = scene_of(snapshot)
+    shadows = ShownShadows(scene, SurfacePoints())
+    return shadows.on(scene.baked, movable_objects(snapshot), changes, threads=threads)
+
+
+def texels(
+    snapshot: WorldSnapshot, layer: NDArray[np.float16]
+) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
+    """Return (N, 2) places of texels on the floor, and the first channel of a layer there."""
+    scene = scene_of(snapshot)
+    values = layer.reshape(scene.side**2, -1)[scene.places, 0].astype(float)
+    return scene.positions[:, :2], values
+
+
+def reader(snapshot: WorldSnapshot, layer: NDArray[np.float16]) -> Callable[..., float]:
+    """Return a function of x and y on the floor: what the nearest texel says."""
+    places, values = texels(snapshot, layer)
+    return lambda x, y: float(values[np.linalg.norm(places - (x, y), axis=1).argmin()])
+
+
+def share_of_board(x: float, y: float, height: float) -> float:
+    """Share of the light from everywhere that a board hides from a point below (Siegel, Howell)."""
+    total = 0.0
+    for a, sign_a in ((0.3 - x, 1), (-0.3 - x, -1)):
+        for b, sign_b in ((0.2 - y, 1), (-0.2 - y, -1)):
+            p, q = a / height, b / height
+            of_p, of_q = np.sqrt(1 + p * p), np.sqrt(1 + q * q)
+            corner = p / of_p * np.arctan(q / of_p) + q / of_q * np.arctan(p / of_q)
+            total += sign_a * sign_b * corner / (2.0 * np.pi)
+    return total
+
+
+def test_a_board_takes_its_share_of_an_even_sky() -> None:
+    """By the form factor, below it and beside it; far away nothing changes."""
+    snapshot = room((BOARD, Pose((0.0, 0.0, 0.25))), environment=WHITE_SKY)
+    places, values = texels(snapshot, shadowed(snapshot).layers[0].bounced)
+    expected = [0.8 * (1.0 - share_of_board(x, y, 0.249)) for x, y in places.astype(float)]
+    below = np.abs(places).max(axis=1) < 0.35
+    np.testing.assert_allclose(values[below], np.array(expected)[below], atol=0.04)
+    far = np.abs(places).min(axis=1) > 0.85
+    np.testing.assert_allclose(values[far], 0.8, atol=0.01)
+
+
+def test_a_lamps_shadow_is_where_it_falls() -> None:
+    """A board half-way up throws a shadow twice its size, and nothing beyond."""
+    snapshot = room((BOARD, Pose((0.0, 0.0, 1.0))), lights=(LAMP,))
+    baked = snapshot.contents.baked
+    assert baked is not None
+    before, after = (
+        reader(snapshot, light.layers[1].direct) for light in (baked, shadowed(snapshot))
+    )
+    assert before(0.45, 0.05) > 0.05
+    assert after(0.45, 0.05) == 0.0
+    assert after(0.05, 0.25) < 0.01 * before(0.05, 0.25)
+    assert after(0.75, 0.05) == before(0.75, 0.05)
+    assert after(0.05, 0.55) == before(0.05, 0.55)
+
+
+def test_the_sun_is_left_to_its_shadow_map() -> None:
+    """It draws what can move in each picture: its shadow would else be there twice."""
+    snapshot = room((BOX, ON_THE_FLOOR), environment=WHITE_SKY, lights=(SUN,))
+    light, baked = shadowed(snapshot), snapshot.contents.baked
+    assert baked is not None
+    assert light.layers[1].direct is baked.layers[1].direct
+    assert light.layers[1].visibility is baked.layers[1].visibility
+    assert light.unshadowed is baked
+    assert light.casters == {2}
+
+
+def test_beside_a_box_it_is_darker_than_farther_away() -> None:
+    """At its foot about half of the sky is hidden, as by an endless wall; it ends within 1 m."""
+    snapshot = room((BOX, ON_THE_FLOOR), environment=WHITE_SKY)
+    read = reader(snapshot, shadowed(snapshot).layers[0].bounced)
+    row = [read(x, 0.05) for x in (0.15, 0.25, 0.35, 0.55, 0.95)]
+    assert 0.4 * 0.8 < row[0] < 0.75 * 0.8
+    assert (np.diff(row) > -0.01).all()
+    assert row[-1] > 0.78
+
+
+def test_shadows_are_a_function_of_what_stands_where() -> None:
+    """Threads, and what was shown before, change no bit; without a change nothing is made."""
+    panel = Light(name="panel", type="area", position_m=(0.5, 0.5, 2.0), direction=(0.0, 0.0, -1.0))
+    boxes = [(BOX, Pose((x, y, 0.101))) for x, y in ((0.0, 0.0), (0.4, 0.3), (-0.6, 0.6))]
+    snapshot = room(*boxes, environment=WHITE_SKY, lights=(LAMP, panel))
+    scene = scene_of(snapshot)
+    away = movable_objects(moved(snapshot, 1, -0.5))
+    here = movable_objects(snapshot)
+    shadows = ShownShadows(scene, SurfacePoints())
+    first = shadows.on(scene.baked, here, (), threads=1)
+    assert shadows.on(scene.baked, here, (), threads=1) is first
+    second = shadows.on(scene.baked, away, (), threads=1)
+    back = shadows.on(scene.baked, here, (), threads=1)
+    fresh = ShownShadows(scene, SurfacePoints())
+    assert_same(first, back)
+    assert_same(second, fresh.on(scene.baked, away, (), threads=4))
+    assert shadows.on(scene.baked, [], (), threads=1) is scene.baked
+
+
+def test_shadows_that_were_kept_are_those_that_are_found(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Of a bake that lies on disk the first ones do, and are no other after a move either."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    snapshot = room((BOX, ON_THE_FLOOR), (BOX, Pose((0.4, 0.3, 0.101))), environment=WHITE_SKY)
+    scene = scene_of(snapshot)
+    scene.baked = replace(scene.baked, checksum="of its file")
+    here, away = (movable_objects(one) for one in (snapshot, moved(snapshot, 1, -0.5)))
+    found = [
+        [shadows.on(scene.baked, things, (), threads=1) for things in (here, away)]
+        for shadows in (ShownShadows(scene, SurfacePoints()) for _ in range(2))
+    ]
+    assert len(list((tmp_path / "arrays").glob("shadows-*"))) == 1
+    for one, two in zip(*found, strict=True):
+        assert_same(one, two)
+
+
+def assert_same(one: BakedLight, two: BakedLight) -> None:
+    """Of two lights all maps are equal."""
+    assert one.casters == two.casters
+    for layer, other in zip(one.layers, two.layers, strict=True):
+        assert np.array_equal(layer.direct, other.direct)
+        assert np.array_equal(layer.bounced, other.bounced)
+
+
+def test_a_floor_that_is_gone_has_no_shadow_and_what_came_hides_one() -> None:
+    """Near furniture that has changed shadows are found again, whatever was known before."""
+    snapshot = room((BOX, ON_THE_FLOOR), environment=WHITE_SKY)
+    scene, things = scene_of(snapshot), movable_objects(snapshot)
+    wide = model_of(box_mesh((1.9, 1.9, 0.3)), base_colour=BLACK)
+    pose = np.eye(4)
+    pose[2, 3] = 0.4
+    came = Change(id=9, before=None, after=pose, came=(wide, (1.0, 1.0, 1.0)))
+    shadows = ShownShadows(scene, SurfacePoints())
+    open_, under = (
+        shadows.on(scene.baked, things, changes, threads=1) for changes in ((), (came,))
+    )
+    lost = [reader(snapshot, light.layers[0].bounced)(0.15, 0.05) for light in (open_, under)]
+    assert lost[0] < 0.65
+    assert lost[1] > lost[0] + 0.05
+    assert_same(under, shadowed(snapshot, (came,)))
+    moved_away = replace(snapshot, contents=snapshot.contents)
+    assert_same(open_, shadowed(moved_away))
