@@ -139,6 +139,8 @@ class WorldSnapshot:
     velocities : (N, 2, 3) float64 or None
         Read-only; of the origin of each body frame [m/s], and angular [rad/s], in world axes. None
         if nothing moves.
+    settling : (N,) bool or None
+        Read-only; what a request has put where it is within the last half second. None if nothing.
     deformations : mapping of int to Deformation
         Of the instances that deform, by their ids; the same object while a shape is unchanged.
     object_light : mapping of int to ObjectLight
@@ -152,15 +154,22 @@ class WorldSnapshot:
     world_from_body: NDArray[np.float64]
     histories: NDArray[np.int64]
     velocities: NDArray[np.float64] | None = None
+    settling: NDArray[np.bool_] | None = None
     deformations: Mapping[int, Deformation] = field(default_factory=dict)
     object_light: Mapping[int, ObjectLight] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         count = len(self.contents.instances)
-        arrays = {"poses": self.world_from_body, "histories": self.histories}
+        arrays: dict[str, NDArray[Any]] = {
+            "poses": self.world_from_body,
+            "histories": self.histories,
+        }
         if self.velocities is not None:
             arrays["velocities"] = self.velocities
+        if self.settling is not None:
+            arrays["settling"] = self.settling
         shapes = {"poses": (count, 4, 4), "histories": (count,), "velocities": (count, 2, 3)}
+        shapes["settling"] = (count,)
         for name, array in arrays.items():
             if array.shape != shapes[name]:
                 raise ValueError(
@@ -179,14 +188,16 @@ class WorldSnapshot:
             world_from_body=self.world_from_body[places],
             histories=self.histories[places],
             velocities=None if self.velocities is None else self.velocities[places],
+            settling=None if self.settling is None else self.settling[places],
         )
 
     @property
     def moving(self) -> NDArray[np.bool_]:
-        """(N,) bool: what moves at this instant."""
-        if self.velocities is None:
-            return np.zeros(len(self.world_from_body), np.bool_)
-        return np.asarray(self.velocities.any(axis=(1, 2)), np.bool_)
+        """(N,) bool: what moves at this instant, or has not settled yet."""
+        moving = np.zeros(len(self.world_from_body), np.bool_)
+        if self.velocities is not None:
+            moving |= self.velocities.any(axis=(1, 2))
+        return moving if self.settling is None else moving | self.settling
 
 
 class AdaptedExposure(NamedTuple):

@@ -84,6 +84,7 @@ class World(WorldRobots):
         """
         self._require_no_robot(placement.name)
         instance_id = self._bodies.add(placement)
+        self._placing_log.note(self.body(instance_id), self._step)
         self._changed_step = self._step
         self._changed()
         return instance_id
@@ -176,6 +177,7 @@ class World(WorldRobots):
         moved.require_free()
         self._bodies.wake_neighbours(moved)
         moved.put(pose)
+        self._placing_log.note(moved, self._step)
         self._bodies.joints.follow(moved)
         carried = set(self._bodies.joints.above(moved))
         if moved.placement.static:

@@ -30,6 +30,7 @@ from sailenv_ros.world.motion_log import Motion, MotionLog
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.mover_table import MoverTable
 from sailenv_ros.world.object_state import object_state
+from sailenv_ros.world.placing_log import PlacingLog
 from sailenv_ros.world.resting import begin_at_rest
 from sailenv_ros.world.robot_placements import RobotPlacement
 from sailenv_ros.world.robot_table import RobotTable
@@ -97,7 +98,7 @@ class WorldState:
         self._client = BulletClient()
         self._stands = MoverTable(self._client, movers)
         self._contact_log = ContactLog(self._client, self._stands.gain)
-        self._motion_log = MotionLog()
+        self._motion_log, self._placing_log = MotionLog(), PlacingLog()
         self._step = 0
         self._snapshot: WorldSnapshot | None = None
         self._states: InstanceStates | None = None
@@ -234,6 +235,7 @@ class WorldState:
                 world_from_body=poses,
                 histories=self._bodies.histories(),
                 velocities=velocities_of(self._bodies.pieces, poses),
+                settling=self._placing_log.settling(self._bodies.pieces, self._step),
                 deformations=self._bodies.deformations(),
             )
         return self._snapshot
@@ -331,14 +333,12 @@ class WorldState:
 
     @property
     def gravity(self) -> tuple[float, float, float]:
-        """Acceleration that pulls every body with gravity, world frame [m/s²]."""
+        """Acceleration of bodies with gravity, world frame [m/s²]."""
         return self._client.gravity
 
     def close(self) -> None:
         """Free the engine; a second call does nothing."""
         self._client.close()
-
-    # -- inside ----------------------------------------------------------------------------
 
     def _changed(self) -> None:
         self._shown.renew()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.physics_check import shifts
 from sailenv_ros.world.placement import Placement
 from tests.support.simple_solids import UNIT_BALL, UNIT_BOX, placed
@@ -95,3 +96,23 @@ def test_what_sleeps_follows_a_gravity_that_is_changed() -> None:
     world.step(120)
     rise = 2.0 / 240**2 * 120 * 121 / 2
     np.testing.assert_allclose(world.object_state(2).pose.position_m[2], 0.5 + rise, atol=1e-4)
+
+
+def test_what_a_request_has_put_somewhere_has_not_settled_for_half_a_second() -> None:
+    """What is seen of it then depends on the world alone, not on which frames were rendered."""
+    ball = placed("ball", (0, 0, 1), gravity=False, asset=UNIT_BALL)
+    world = make_world(ball, placed("other", (3, 0, 1), gravity=False, asset=UNIT_BALL))
+    assert not world.snapshot().moving.any()
+    world.step(10)
+    world.put_body(1, Pose((0, 1, 1)))
+    assert world.snapshot().moving.tolist() == [True, False]
+    world.step(119)
+    assert world.snapshot().moving.tolist() == [True, False]
+    world.step(1)
+    assert not world.snapshot().moving.any()
+    spawned = world.spawn(placed("third", (0, 0, 3), gravity=False, asset=UNIT_BALL))
+    assert world.snapshot().moving.tolist() == [False, False, True]
+    world.step(120)
+    assert not world.snapshot().moving.any()
+    assert spawned == 3
+    world.close()
