@@ -1,4 +1,4 @@
-"""Which bodies a request has put somewhere a moment ago: they do not count as resting yet.
+"""Bodies that a request has put somewhere a moment ago: they do not count as resting yet.
 
 So light is found again for what stays where it was put, not for each place on the way, and what is
 seen depends on the world alone.
