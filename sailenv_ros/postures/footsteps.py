@@ -13,6 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sailenv_ros.postures.easing import smooth_step
+
 __all__ = [
     "FootPrint",
     "Moment",
@@ -165,7 +167,7 @@ class Way:
         if number == 0:
             eased = share * share * (2.0 - share)  # from rest
         if number == len(self.prints) - 1:
-            eased = 1.0 - (1.0 - eased) ** 2 * (1.0 + eased) if number else _smooth(share)
+            eased = 1.0 - (1.0 - eased) ** 2 * (1.0 + eased) if number else smooth_step(share)
         x, y = (a + eased * (b - a) for a, b in zip(now[:2], later[:2], strict=True))
         yaw = now[2] + eased * _turn(now[2], later[2])
         return Moment(
@@ -309,7 +311,3 @@ def _middle(feet: Sequence[FootPrint]) -> tuple[float, float, float]:
 
 def _turn(start: float, end: float) -> float:
     return float((end - start + np.pi) % (2.0 * np.pi) - np.pi)
-
-
-def _smooth(share: float) -> float:
-    return share * share * (3.0 - 2.0 * share)

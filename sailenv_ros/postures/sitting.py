@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.postures.easing import smoother_step
 from sailenv_ros.postures.figure import Figure, figure_of
 from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.limbs import bend_arm, bend_leg, two_bones
@@ -70,7 +71,7 @@ def sitting_posture(
         Of feet that stand before the seat, with their back to it.
     """
     figure = figure_of(rig)
-    eased = share * share * share * (share * (6.0 * share - 15.0) + 10.0)
+    eased = smoother_step(share)
     standing = walking_posture(rig, moment, time_s, seed=seed, look_deg=look_deg)
     if eased <= 0.0:
         return standing

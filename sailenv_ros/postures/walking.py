@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.postures.easing import smooth_step
 from sailenv_ros.postures.figure import Figure, figure_of
 from sailenv_ros.postures.footsteps import FootPrint, Moment
 from sailenv_ros.postures.limbs import bend_leg
@@ -141,7 +142,7 @@ def _swinging_foot(
         left = max(0.0, 1.0 - (share - _LANDS) / 0.2)
         return _standing_foot(figure, goal, strike * left, 0.0)
     part = (share - _LIFTS) / (_LANDS - _LIFTS)
-    eased = part * part * (3.0 - 2.0 * part)
+    eased = smooth_step(part)
     first, _ = _standing_foot(figure, begin, 0.0, push)
     last, _ = _standing_foot(figure, goal, strike, 0.0)
     ankle = first + eased * (last - first)

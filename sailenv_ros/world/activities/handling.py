@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S
-from sailenv_ros.behaviours.person import Activity
-from sailenv_ros.postures.blending import JointTurns
+from sailenv_ros.postures.easing import smoother_step
 from sailenv_ros.postures.footsteps import Moment
-from sailenv_ros.postures.reaching import Grip, on_its_feet, reaching_posture, with_carrying_arm
+from sailenv_ros.postures.reaching import Grip, reaching_posture, with_carrying_arm
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import invert
-from sailenv_ros.world.activities.base import Actor, Held, Instant, Place, SpotActivity
+from sailenv_ros.world.activities.base import Actor, Held, Instant, Place
+from sailenv_ros.world.activities.hand import REACH_S, HandActivity
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.surfaces import free_spots
@@ -26,8 +26,8 @@ __all__ = ["Putting", "Taking", "can_be_taken", "ways_to_put", "ways_to_take"]
 
 Doubles = NDArray[np.float64]
 
-_REACH_S, _GRIP_S = 1.2, 0.2
-"""Time of the hand's way there, and back, and to close or open [s]."""
+_GRIP_S = 0.2
+"""Time in which the hand closes or opens [s]."""
 
 _HEAVIEST_KG, _WIDEST_M, _LONGEST_M = 4.0, 0.11, 0.45
 """Of what one hand takes: its mass, its width between palm and fingers, its longest side."""
@@ -39,25 +39,17 @@ _ABOVE_M = 0.003
 """From which a thing is let go [m]."""
 
 
-class _Handling(SpotActivity):
+class _Handling(HandActivity):
     """A hand that goes somewhere and comes back."""
 
     def __init__(
         self, actor: Actor, name: str, goal: Doubles, grip: Grip, feet: Place, yaw: float
     ) -> None:
-        self._actor, self._goal, self._grip = actor, goal, grip
+        super().__init__(actor, _GRIP_S)
+        self._goal, self._grip = goal, grip
         self.feet, self.yaw, self.piece = feet, yaw, name
-        self._done_s = 0.0
         self._turn = np.eye(3)
         self._reaches: Posture | None = None
-
-    @property
-    def word(self) -> Activity:
-        """Word for it now."""
-        return "reaching"
-
-    def end(self) -> None:
-        """Nothing: it does not take long."""
 
     def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
         """Continue by a step; return False once it is done, or cannot be done."""
@@ -68,18 +60,11 @@ class _Handling(SpotActivity):
             stands = walking_posture(self._actor.rig, moment, 0.0)
             self._reaches = reaching_posture(self._actor.rig, stands, moment, goal, self._grip)
         self._done_s += STEP_S
-        return self._reaches is not None and self._done_s < 2.0 * _REACH_S + _GRIP_S
+        return self._reaches is not None and self._goes_on
 
     @property
     def _gripped(self) -> bool:
-        return self._done_s >= _REACH_S + 0.5 * _GRIP_S
-
-    def _share(self) -> float:
-        """Share of the way to the thing."""
-        back = self._done_s - _REACH_S - _GRIP_S
-        share = self._done_s / _REACH_S if back < 0.0 else 1.0 - back / _REACH_S
-        share = float(np.clip(share, 0.0, 1.0))
-        return share * share * share * (share * (6.0 * share - 15.0) + 10.0)
+        return self._done_s >= REACH_S + 0.5 * _GRIP_S
 
     def posture(self, now: Instant) -> Posture:
         """Return the posture, in the frame of the body."""
@@ -88,8 +73,8 @@ class _Handling(SpotActivity):
         begin = with_carrying_arm(rig, stands) if self._carries else stands
         if self._reaches is None:
             return begin
-        one, two = (JointTurns.of(rig, each) for each in (begin, self._reaches))
-        return on_its_feet(rig, one.towards(two, self._share()).posture(rig), now.moment)
+        share = smoother_step(self._share_of_time)
+        return self._between(begin, self._reaches, share, now.moment)
 
     @property
     @abstractmethod

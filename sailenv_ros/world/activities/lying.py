@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.behaviours.person import Activity
 from sailenv_ros.postures.blending import JointTurns
+from sailenv_ros.postures.easing import smooth_step
 from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.lying import SINK_M, Ground, depths, lying_posture, tucked_posture
 from sailenv_ros.postures.skeleton import Posture, turn_about
@@ -247,19 +248,16 @@ def _between(
     """Return the posture at a share of the way from the edge into the bed."""
     tucked, turned, lies = stages
     if share < _TUCKED:
-        return begin.towards(tucked, _smooth(share / _TUCKED)).posture(rig)
+        return begin.towards(tucked, smooth_step(share / _TUCKED)).posture(rig)
     if share < _TURNED:
-        return tucked.towards(turned, _smooth((share - _TUCKED) / (_TURNED - _TUCKED))).posture(rig)
-    return turned.towards(lies, _smooth((share - _TURNED) / (1.0 - _TURNED))).posture(rig)
+        turning = smooth_step((share - _TUCKED) / (_TURNED - _TUCKED))
+        return tucked.towards(turned, turning).posture(rig)
+    return turned.towards(lies, smooth_step((share - _TURNED) / (1.0 - _TURNED))).posture(rig)
 
 
 def _too_deep(found: Doubles, beside_m: float) -> float:
     """Return how far a body is to be raised, by the depths of its vertices [m]."""
     return max(float(found[found < beside_m].max(initial=0.0)) - 1.5 * SINK_M, 0.0)
-
-
-def _smooth(share: float) -> float:
-    return share * share * (3.0 - 2.0 * share)
 
 
 def _above_chest(rig: Rig) -> list[str]:

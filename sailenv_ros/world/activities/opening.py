@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S, JointMotion, running_motion
-from sailenv_ros.behaviours.person import Activity
-from sailenv_ros.postures.blending import JointTurns
+from sailenv_ros.postures.easing import smooth_step
 from sailenv_ros.postures.footsteps import Moment, moment_of, standing_feet
-from sailenv_ros.postures.reaching import Grip, on_its_feet, reaching_posture
+from sailenv_ros.postures.reaching import Grip, reaching_posture
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose, invert
-from sailenv_ros.world.activities.base import Actor, Instant, Place, SpotActivity
+from sailenv_ros.world.activities.base import Actor, Instant, Place
+from sailenv_ros.world.activities.hand import REACH_S, HandActivity
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.kinematics import link_pose
@@ -26,7 +26,9 @@ __all__ = ["Opening", "ways_to_open"]
 
 Doubles = NDArray[np.float64]
 
-_REACH_S, _MOVE_S = 1.2, 2.2
+_MOVE_S = 2.2
+"""Time in which it opens or closes [s]."""
+
 _NEAREST_M, _FARTHEST_M = 0.3, 0.68
 """From where one stands to what the hand holds [m]."""
 
@@ -55,7 +57,7 @@ class Jointed(Protocol):
         """Return where it is while the position is 0."""
 
 
-class Opening(SpotActivity):
+class Opening(HandActivity):
     """A person who opens or closes something.
 
     Parameters
@@ -76,22 +78,14 @@ class Opening(SpotActivity):
     def __init__(
         self, actor: Actor, body: Body, handle: Doubles, goal: float, feet: Place, yaw: float
     ) -> None:
-        self._actor, self._body, self._handle = actor, body, handle
+        super().__init__(actor, _MOVE_S)
+        self._body, self._handle = body, handle
         self.feet, self.yaw, self.piece = feet, yaw, body.placement.name
         first = cast(Jointed, body).joint_state()[0]
         motion = JointMotion(first=first, position=goal, seconds=_MOVE_S)
         self._motion = running_motion(motion, 0.0)
-        self._done_s = 0.0
         self._own = np.eye(4)
         self._first: Posture | None = None
-
-    @property
-    def word(self) -> Activity:
-        """Word for it now."""
-        return "reaching"
-
-    def end(self) -> None:
-        """Nothing: it does not take long."""
 
     def advance(self, world_from_body: Doubles, moment: Moment) -> bool:
         """Continue by a step; return False once it is done, or cannot be done."""
@@ -101,11 +95,11 @@ class Opening(SpotActivity):
             self._first = self._reached(stands, moment)
         if self._first is None:
             return False
-        moved_s = self._done_s - _REACH_S
+        moved_s = self._done_s - REACH_S
         if 0.0 <= moved_s < _MOVE_S + 0.5 * STEP_S:
             self._body.behave(self._motion, moved_s, lambda agent, distance_m: np.zeros((0, 4)))
         self._done_s += STEP_S
-        return self._done_s < 2.0 * _REACH_S + _MOVE_S
+        return self._goes_on
 
     def posture(self, now: Instant) -> Posture:
         """Return the posture, in the frame of the body."""
@@ -114,14 +108,7 @@ class Opening(SpotActivity):
         if self._first is None:
             return stands
         reaches = self._reached(stands, now.moment) or self._first
-        one, two = (JointTurns.of(rig, each) for each in (stands, reaches))
-        return on_its_feet(rig, one.towards(two, self._share()).posture(rig), now.moment)
-
-    def _share(self) -> float:
-        back = self._done_s - _REACH_S - _MOVE_S
-        share = self._done_s / _REACH_S if back < 0.0 else 1.0 - back / _REACH_S
-        share = float(np.clip(share, 0.0, 1.0))
-        return share * share * (3.0 - 2.0 * share)
+        return self._between(stands, reaches, smooth_step(self._share_of_time), now.moment)
 
     def _reached(self, stands: Posture, moment: Moment) -> Posture | None:
         matrix = self._own @ self._body.world_from_body()

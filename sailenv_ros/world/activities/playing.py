@@ -9,6 +9,7 @@ from sailenv_ros.assets.motions import find_clip
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.behaviours.person import Activity, ClipPlay
 from sailenv_ros.postures.blending import JointTurns
+from sailenv_ros.postures.easing import smooth_step
 from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.retargeting import retargeted
 from sailenv_ros.postures.skeleton import Posture, turn_about
@@ -119,8 +120,7 @@ class Playing(SpotActivity):
     def _stands(self) -> float:
         """Share of standing at the beginning and at the end."""
         away = max(-self._done_s, self._done_s - self._length_s)
-        share = float(np.clip(away / _BLEND_S, 0.0, 1.0))
-        return share * share * (3.0 - 2.0 * share)
+        return smooth_step(float(np.clip(away / _BLEND_S, 0.0, 1.0)))
 
     def _own(self) -> Doubles:
         """Return the pose of the body from where the round began."""

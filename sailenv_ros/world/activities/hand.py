@@ -1,0 +1,57 @@
+"""An activity of a hand: it goes somewhere, stays there for a time, and comes back."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sailenv_ros.behaviours.person import Activity
+from sailenv_ros.postures.blending import JointTurns
+from sailenv_ros.postures.footsteps import Moment
+from sailenv_ros.postures.reaching import on_its_feet
+from sailenv_ros.postures.skeleton import Posture
+from sailenv_ros.world.activities.base import Actor, SpotActivity
+
+__all__ = ["REACH_S", "HandActivity"]
+
+REACH_S = 1.2
+"""Time of the hand's way there, and of the way back [s]."""
+
+
+class HandActivity(SpotActivity):
+    """An activity of one hand.
+
+    Parameters
+    ----------
+    actor : Actor
+    stays_s : float
+        Time between the way there and the way back [s].
+    """
+
+    def __init__(self, actor: Actor, stays_s: float) -> None:
+        self._actor, self._stays_s = actor, stays_s
+        self._done_s = 0.0
+
+    @property
+    def word(self) -> Activity:
+        """Word for it now."""
+        return "reaching"
+
+    def end(self) -> None:
+        """Nothing: it does not take long."""
+
+    @property
+    def _goes_on(self) -> bool:
+        return self._done_s < 2.0 * REACH_S + self._stays_s
+
+    @property
+    def _share_of_time(self) -> float:
+        """Share of the time of the way there: from 0 to 1, and back."""
+        back = self._done_s - REACH_S - self._stays_s
+        share = self._done_s / REACH_S if back < 0.0 else 1.0 - back / REACH_S
+        return float(np.clip(share, 0.0, 1.0))
+
+    def _between(self, begin: Posture, reaches: Posture, share: float, moment: Moment) -> Posture:
+        """Return the posture at a share of the way from one posture to another."""
+        rig = self._actor.rig
+        one, two = (JointTurns.of(rig, each) for each in (begin, reaches))
+        return on_its_feet(rig, one.towards(two, share).posture(rig), moment)
