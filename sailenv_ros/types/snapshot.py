@@ -24,7 +24,17 @@ from sailenv_ros.types.model import Model
 from sailenv_ros.types.outside import Outside
 from sailenv_ros.types.row_poses import RowPoses
 
-__all__ = ["AdaptedExposure", "DrawnInstance", "Observation", "SceneContents", "WorldSnapshot"]
+__all__ = [
+    "REST_S",
+    "AdaptedExposure",
+    "DrawnInstance",
+    "Observation",
+    "SceneContents",
+    "WorldSnapshot",
+]
+
+REST_S = 0.5
+"""Simulated time for which something must stay where it was put to count as resting [s]."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -140,7 +150,7 @@ class WorldSnapshot:
         Read-only; of the origin of each body frame [m/s], and angular [rad/s], in world axes. None
         if nothing moves.
     settling : (N,) bool or None
-        Read-only; what a request has put where it is within the last half second. None if nothing.
+        Read-only; what a request has put where it is within the last `REST_S`. None if nothing.
     deformations : mapping of int to Deformation
         Of the instances that deform, by their ids; the same object while a shape is unchanged.
     object_light : mapping of int to ObjectLight

@@ -11,13 +11,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.types.snapshot import REST_S
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.labelled_pieces import LabelledPiece
 
 __all__ = ["PlacingLog"]
 
-SETTLING_STEPS = STEPS_PER_SECOND // 2
+SETTLING_STEPS = round(REST_S * STEPS_PER_SECOND)
 """Steps for which a body that was put somewhere does not count as resting."""
 
 

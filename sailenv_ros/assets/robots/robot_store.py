@@ -22,7 +22,7 @@ from sailenv_ros.assets.robots.urdf_file import described, mount_of, read_urdf
 from sailenv_ros.assets.safe_xml import read_xml
 from sailenv_ros.errors import AssetError, AssetMissing, UnknownName
 from sailenv_ros.types.model import Asset
-from sailenv_ros.types.robots import LINK_ASSETS, RobotModel
+from sailenv_ros.types.robots import LINK_ASSETS, Mount, RobotModel
 
 __all__ = ["RobotStore", "is_of_package", "robot_path"]
 
@@ -141,9 +141,11 @@ class RobotStore:
 def _read(path: Path, data: bytes, key: str) -> RobotModel:
     root = read_xml(data, path.name)
     start: dict[str, float] = {}
-    text, mount = "", mount_of(root)
+    mount: Mount = "fixed"
+    text = ""
     if root.tag == "robot":
         links, joints = read_urdf(root, path)
+        mount = mount_of(root)
         text = described(data.decode("utf-8-sig", "replace"), path)
     elif root.tag == "mujoco":
         content = read_mjcf(path)

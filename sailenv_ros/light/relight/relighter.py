@@ -23,13 +23,13 @@ from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.native.library import thread_count
 from sailenv_ros.types.baked_light import BakedLight, ObjectLight
 from sailenv_ros.types.model import Model
-from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
+from sailenv_ros.types.snapshot import REST_S, SceneContents, WorldSnapshot
 
 __all__ = ["READY_FRAMES", "Relighter"]
 
 _log = logging.getLogger(__name__)
 
-REST_NS = 500_000_000
+REST_NS = round(REST_S * 1e9)
 """Simulated time for which everything must stand still before light is refined within a frame."""
 
 READY_FRAMES = 3
