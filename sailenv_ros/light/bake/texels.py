@@ -119,9 +119,11 @@ def rasterised(geometry: StaticGeometry, layout: Layout) -> Texels:
 
 def off_the_edges(corners: NDArray[np.float32], share: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the weights of points a little further in: at the very edge others may begin."""
-    middles = corners.mean(axis=1)
-    points = np.einsum("nc,ncx->nx", share, corners)
-    far = np.maximum(np.linalg.norm(middles - points, axis=1), 1e-9)
-    inwards = np.where(share.min(axis=1) < EDGE, np.minimum(EDGE_M / far, 1.0 / 3.0), 0.0)
-    moved = share * (1.0 - inwards[:, None]) + inwards[:, None] / 3.0
-    return np.asarray(moved, dtype=np.float32)
+    edge = np.flatnonzero(share.min(axis=1) < EDGE)
+    own, near = share[edge], corners[edge]
+    points = np.einsum("nc,ncx->nx", own, near)
+    far = np.maximum(np.linalg.norm(near.mean(axis=1) - points, axis=1), 1e-9)
+    inwards = np.minimum(EDGE_M / far, 1.0 / 3.0)[:, None]
+    moved = share.astype(np.float32)
+    moved[edge] = own * (1.0 - inwards) + inwards / 3.0
+    return moved

@@ -303,18 +303,23 @@ def _look(material: Material) -> tuple[Floats, Floats]:
     base = np.asarray(material.base_colour[:3], np.float64)
     texture = material.base_colour_texture
     if texture is not None:
-        step = max(texture.shape[0] // 64, 1)
-        texels = texture[::step, ::step]
-        colours = LINEAR_OF_SRGB8[texels[..., :3]].reshape(-1, 3)
-        weight = texels[..., 3].reshape(-1, 1) / 255.0 if material.alpha == "mask" else 1.0
-        weight = np.broadcast_to(weight, (len(colours), 1))
-        pattern = (colours * weight).sum(axis=0) / max(float(weight.sum()), 1e-6)
+        texels = _some_texels(texture)
+        colours = LINEAR_OF_SRGB8[texels[:, :3]]
+        weight = texels[:, 3] / 255.0 if material.alpha == "mask" else np.ones(len(texels))
+        pattern = weight @ colours / max(float(weight.sum()), 1e-6)
         base = base * pattern
     finish = np.array([[material.roughness, material.metallic]])
     if material.metallic_roughness_texture is not None:
-        finish = finish * material.metallic_roughness_texture[..., 1:3].mean(axis=(0, 1)) / 255.0
+        texels = _some_texels(material.metallic_roughness_texture)
+        finish = finish * (np.ones(len(texels)) @ texels[:, 1:3]) / (255.0 * len(texels))
     albedo = returned(base[None], finish[:, :1], finish[:, 1:])[0]
     emission = np.asarray(material.emission, np.float32)
     if texture is not None and emission.any():
         emission = (emission * pattern).astype(np.float32)
     return np.clip(albedo, 0.0, 0.95).astype(np.float32), emission
+
+
+def _some_texels(texture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return (n, channels): texels evenly over a texture, some 64 rows of them."""
+    step = max(texture.shape[0] // 64, 1)
+    return texture[::step, ::step].reshape(-1, texture.shape[2])
