@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -381,17 +382,15 @@ def test_steps_tell_how_far_they_are(call: StandardClient, probe: Probe) -> None
     heard: list[Any] = []
 
     def begun(steps: int, timeout_s: float = 20.0) -> Any:
-        asked = SimulateSteps.Goal(steps=steps)
-        sending = client.send_goal_async(
-            asked, feedback_callback=lambda message: heard.append(message.feedback)
+        send = partial(
+            client.send_goal_async,
+            SimulateSteps.Goal(steps=steps),
+            feedback_callback=lambda message: heard.append(message.feedback),
         )
-        until(sending.done, "the goal to be accepted", timeout_s)
-        return sending.result()
+        return probe.ask(send, "the goal to be accepted", timeout_s)
 
     def ended(goal: Any, timeout_s: float = 20.0) -> Any:
-        result = goal.get_result_async()
-        until(result.done, "the result", timeout_s)
-        return result.result()
+        return probe.ask(goal.get_result_async, "the result", timeout_s)
 
     def stepped() -> bool:
         # DDS drops an answer whose reader the server has not found yet.
@@ -414,8 +413,7 @@ def test_steps_tell_how_far_they_are(call: StandardClient, probe: Probe) -> None
     heard.clear()
     goal = begun(1_000_000)
     until(lambda: heard and heard[-1].remaining_steps > 24, "feedback")
-    cancelling = goal.cancel_goal_async()
-    until(cancelling.done, "the answer to a cancellation")
+    probe.ask(goal.cancel_goal_async, "the answer to a cancellation")
     cancelled = ended(goal)
     assert cancelled.status == GoalStatus.STATUS_CANCELED
     assert cancelled.result.result.result == FAILED

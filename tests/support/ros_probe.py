@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -109,6 +109,18 @@ class Probe:
         answer = self.call(kind, service, request)
         assert answer.success, answer.message
         return answer
+
+    def ask(self, send: Callable[[], Any], what: str, timeout_s: float = 20.0) -> Any:
+        """Send a request of an action by its client's method; return the answer.
+
+        In the executor's thread: rclpy notes the request's number after sending it, and an answer
+        that another thread takes before is dropped ("unexpected goal response").
+        """
+        sending = self._executor.create_task(send)
+        until(sending.done, f"{what} to be sent", timeout_s)
+        answering = sending.result()
+        until(answering.done, what, timeout_s)
+        return answering.result()
 
     def listen(self, kind: Any, topic: str, qos: QoSProfile = RELIABLE) -> Topic:
         """Keep what arrives on a topic from now on."""
