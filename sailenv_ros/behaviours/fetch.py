@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from sailenv_ros.behaviours.base import Action, BodyState, behaviour
 from sailenv_ros.behaviours.person import (
-    ASK_AGAIN_S,
+    Person,
     PersonParameters,
-    free_person,
-    pause_between,
+    pause,
+    person_behaviour,
 )
 
 __all__ = ["Fetch", "fetch"]
@@ -30,29 +29,26 @@ class Fetch(PersonParameters):
     times: int = Field(default=1, ge=1, le=100_000, description="how many things are carried")
 
 
-@behaviour("fetch", Fetch)
+@person_behaviour("fetch", Fetch)
 def fetch(
     parameters: Fetch,
     time_s: float,
-    body: BodyState,
+    person: Person,
     memory: dict[str, Any],
     rng: np.random.Generator,
-) -> Action:
+) -> bool:
     """Walk to a thing, take it, carry it to a piece of furniture, and put it down."""
-    person = free_person(parameters, time_s, body, memory, rng)
     done = int(memory.get("done", 0))
-    if person is None or done >= parameters.times:
-        return Action()
-    if memory.get("takes") and person.holds == parameters.objects[done % len(parameters.objects)]:
+    if done >= parameters.times:
+        return True
+    thing = parameters.objects[done % len(parameters.objects)]
+    if memory.get("takes") and person.holds == thing:
         memory["takes"], memory["puts"] = False, True
     elif memory.get("puts") and not person.holds:
-        memory["puts"] = False
-        memory["done"] = done + 1
-        return pause_between(parameters, memory, time_s, rng)
+        memory["puts"], memory["done"] = False, done + 1
+        pause(parameters, time_s, memory, rng)
+        return True
     if memory.get("puts"):
-        goes = person.put_on(parameters.to[done % len(parameters.to)])
-    else:
-        goes = memory["takes"] = person.take(parameters.objects[done % len(parameters.objects)])
-    if not goes:
-        memory["until_s"] = time_s + ASK_AGAIN_S
-    return Action()
+        return person.put_on(parameters.to[done % len(parameters.to)])
+    memory["takes"] = person.take(thing)
+    return bool(memory["takes"])

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
 from pydantic import Field
 
-from sailenv_ros.behaviours.base import Action, BodyState, behaviour
-from sailenv_ros.behaviours.person import PersonParameters, Rest, Seconds, rest_somewhere
+from sailenv_ros.behaviours.person import (
+    Person,
+    PersonParameters,
+    Rest,
+    Seconds,
+    resting_behaviour,
+)
 
 __all__ = ["Lie", "lie"]
 
@@ -24,17 +26,7 @@ class Lie(PersonParameters):
     )
 
 
-@behaviour("lie", Lie)
-def lie(
-    parameters: Lie,
-    time_s: float,
-    body: BodyState,
-    memory: dict[str, Any],
-    rng: np.random.Generator,
-) -> Action:
+@resting_behaviour("lie", Lie)
+def lie(parameters: Lie, person: Person) -> Rest:
     """Walk to a bed or a couch, lie for a while, get up, and go to the next."""
-    person = body.person
-    if person is not None and time_s >= 0.0:
-        rest = Rest("lying", parameters.lying, parameters.beds, person.beds, person.lie_on)
-        rest_somewhere(parameters, rest, time_s, person, memory, rng)
-    return Action()
+    return Rest("lying", parameters.lying, parameters.beds, person.beds, person.lie_on)

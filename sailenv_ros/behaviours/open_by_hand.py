@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from sailenv_ros.behaviours.base import Action, BodyState, behaviour
-from sailenv_ros.behaviours.person import ASK_AGAIN_S, PersonParameters, free_person
+from sailenv_ros.behaviours.person import Person, PersonParameters, in_turn, person_behaviour
 
 __all__ = ["OpenByHand", "open_by_hand"]
 
@@ -21,20 +20,13 @@ class OpenByHand(PersonParameters):
     )
 
 
-@behaviour("open_by_hand", OpenByHand)
+@person_behaviour("open_by_hand", OpenByHand)
 def open_by_hand(
     parameters: OpenByHand,
     time_s: float,
-    body: BodyState,
+    person: Person,
     memory: dict[str, Any],
     rng: np.random.Generator,
-) -> Action:
+) -> bool:
     """Walk to a door or a drawer and open it by hand, or close it if it is open."""
-    person = free_person(parameters, time_s, body, memory, rng)
-    if person is None:
-        return Action()
-    number = int(memory.get("number", -1)) + 1
-    memory["number"] = number
-    if not person.open(parameters.joints[number % len(parameters.joints)]):
-        memory["until_s"] = time_s + ASK_AGAIN_S
-    return Action()
+    return person.open(in_turn(parameters.joints, memory))

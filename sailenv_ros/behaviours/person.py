@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any, Literal, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from pydantic import Field
 
-from sailenv_ros.behaviours.base import Action, BehaviourParameters, BodyState
+from sailenv_ros.behaviours.base import Action, BehaviourKind, BehaviourParameters, BodyState
 from sailenv_ros.scene.field_types import Number
 
 __all__ = [
@@ -17,10 +17,10 @@ __all__ = [
     "Person",
     "PersonParameters",
     "Rest",
-    "free_person",
-    "pause_between",
-    "rest_somewhere",
-    "waits",
+    "in_turn",
+    "pause",
+    "person_behaviour",
+    "resting_behaviour",
 ]
 
 Activity: TypeAlias = Literal[
@@ -134,36 +134,53 @@ class PersonParameters(BehaviourParameters):
         return True
 
 
-def free_person(
-    parameters: PersonParameters,
-    time_s: float,
-    body: BodyState,
-    memory: dict[str, Any],
-    rng: np.random.Generator,
-) -> Person | None:
-    """Return a person who stands and has paused after its walk; None while there is none."""
-    person = body.person
-    if person is None or time_s < 0.0 or person.activity != "standing":
-        memory["walks"] = person is not None and person.activity in _PAUSES_AFTER
-        return None
-    if memory.pop("walks", False):
-        pause_between(parameters, memory, time_s, rng)
-        return None
-    return None if waits(memory, time_s) else person
+PersonFunction: TypeAlias = Callable[
+    [Any, float, Person, dict[str, Any], np.random.Generator], object
+]
+"""Called with parameters, time [s], the person, memory and random numbers; returns whether anything
+began: what says False is asked again soon."""
 
 
-def waits(memory: dict[str, Any], time_s: float) -> bool:
-    """Return whether one who behaves waits until a time that its memory has."""
-    return bool(time_s < memory.get("until_s", 0.0))
+def person_behaviour(
+    type_: str, parameters: type[PersonParameters]
+) -> Callable[[PersonFunction], BehaviourKind]:
+    """Turn what one who stands and has paused begins into a behaviour kind; used as a decorator."""
+
+    def decorate(function: PersonFunction) -> BehaviourKind:
+        def behave(
+            given: PersonParameters,
+            time_s: float,
+            body: BodyState,
+            memory: dict[str, Any],
+            rng: np.random.Generator,
+        ) -> Action:
+            person = body.person
+            if person is None or time_s < 0.0 or person.activity != "standing":
+                memory["walks"] = person is not None and person.activity in _PAUSES_AFTER
+            elif memory.pop("walks", False):
+                pause(given, time_s, memory, rng)
+            elif not _waits(memory, time_s) and not function(given, time_s, person, memory, rng):
+                memory["until_s"] = time_s + ASK_AGAIN_S
+            return Action()
+
+        behave.__doc__ = function.__doc__
+        return BehaviourKind(type=type_, parameters=parameters, function=behave)
+
+    return decorate
 
 
-def pause_between(
-    parameters: PersonParameters, memory: dict[str, Any], time_s: float, rng: np.random.Generator
-) -> Action:
+def in_turn(names: Sequence[str], memory: dict[str, Any]) -> str:
+    """Return the next of some names, the first one after the last."""
+    number = memory["number"] = int(memory.get("number", -1)) + 1
+    return names[number % len(names)]
+
+
+def pause(
+    parameters: PersonParameters, time_s: float, memory: dict[str, Any], rng: np.random.Generator
+) -> None:
     """Wait for a random time."""
     low, high = parameters.pause
     memory["until_s"] = time_s + float(rng.uniform(low, max(low, high)))
-    return Action()
 
 
 class Rest(NamedTuple):
@@ -190,7 +207,31 @@ class Rest(NamedTuple):
     begin: Callable[[str], bool]
 
 
-def rest_somewhere(
+def resting_behaviour(
+    type_: str, parameters: type[PersonParameters]
+) -> Callable[[Callable[[Any, Person], Rest]], BehaviourKind]:
+    """Turn a way to rest into a behaviour kind; used as a decorator."""
+
+    def decorate(function: Callable[[Any, Person], Rest]) -> BehaviourKind:
+        def behave(
+            given: PersonParameters,
+            time_s: float,
+            body: BodyState,
+            memory: dict[str, Any],
+            rng: np.random.Generator,
+        ) -> Action:
+            if body.person is not None and time_s >= 0.0:
+                rest = function(given, body.person)
+                _rest_somewhere(given, rest, time_s, body.person, memory, rng)
+            return Action()
+
+        behave.__doc__ = function.__doc__
+        return BehaviourKind(type=type_, parameters=parameters, function=behave)
+
+    return decorate
+
+
+def _rest_somewhere(
     parameters: PersonParameters,
     rest: Rest,
     time_s: float,
@@ -208,9 +249,9 @@ def rest_somewhere(
     if person.activity != "standing":
         return
     if memory.pop("up_s", None) is not None:
-        pause_between(parameters, memory, time_s, rng)
+        pause(parameters, time_s, memory, rng)
         return
-    if waits(memory, time_s):
+    if _waits(memory, time_s):
         return
     free = rest.free()
     wanted = [name for name in rest.wanted or free if name in free]
@@ -218,3 +259,8 @@ def rest_somewhere(
         if rest.begin(wanted[place]):
             return
     memory["until_s"] = time_s + ASK_AGAIN_S
+
+
+def _waits(memory: dict[str, Any], time_s: float) -> bool:
+    """Return whether one who behaves waits until a time that its memory has."""
+    return bool(time_s < memory.get("until_s", 0.0))

@@ -9,8 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from sailenv_ros.assets.motions import find_clip
-from sailenv_ros.behaviours.base import Action, BodyState, behaviour
-from sailenv_ros.behaviours.person import ASK_AGAIN_S, ClipPlay, PersonParameters, free_person
+from sailenv_ros.behaviours.person import ClipPlay, Person, PersonParameters, person_behaviour
 from sailenv_ros.errors import AssetError
 from sailenv_ros.scene.field_types import Number, Text, field_error, optional
 
@@ -49,22 +48,18 @@ class PlayClip(PersonParameters):
     )
 
 
-@behaviour("play_clip", PlayClip)
+@person_behaviour("play_clip", PlayClip)
 def play_clip(
     parameters: PlayClip,
     time_s: float,
-    body: BodyState,
+    person: Person,
     memory: dict[str, Any],
     rng: np.random.Generator,
-) -> Action:
+) -> bool:
     """Walk to a place, play a clip there, pause, and begin again."""
-    person = free_person(parameters, time_s, body, memory, rng)
-    if person is None:
-        return Action()
-    play = ClipPlay(
-        *(parameters.clip, parameters.times, parameters.speed),
-        *(parameters.place, parameters.facing),
+    return person.play(
+        ClipPlay(
+            *(parameters.clip, parameters.times, parameters.speed),
+            *(parameters.place, parameters.facing),
+        )
     )
-    if not person.play(play):
-        memory["until_s"] = time_s + ASK_AGAIN_S
-    return Action()

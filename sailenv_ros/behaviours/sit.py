@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
 from pydantic import Field
 
-from sailenv_ros.behaviours.base import Action, BodyState, behaviour
-from sailenv_ros.behaviours.person import PersonParameters, Rest, Seconds, rest_somewhere
+from sailenv_ros.behaviours.person import (
+    Person,
+    PersonParameters,
+    Rest,
+    Seconds,
+    resting_behaviour,
+)
 
 __all__ = ["Sit", "sit"]
 
@@ -24,17 +26,7 @@ class Sit(PersonParameters):
     )
 
 
-@behaviour("sit", Sit)
-def sit(
-    parameters: Sit,
-    time_s: float,
-    body: BodyState,
-    memory: dict[str, Any],
-    rng: np.random.Generator,
-) -> Action:
+@resting_behaviour("sit", Sit)
+def sit(parameters: Sit, person: Person) -> Rest:
     """Walk to a seat, sit for a while, get up, and go to the next."""
-    person = body.person
-    if person is not None and time_s >= 0.0:
-        rest = Rest("seated", parameters.sitting, parameters.seats, person.seats, person.sit_on)
-        rest_somewhere(parameters, rest, time_s, person, memory, rng)
-    return Action()
+    return Rest("seated", parameters.sitting, parameters.seats, person.seats, person.sit_on)

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from sailenv_ros.behaviours.base import Action, BodyState, behaviour
-from sailenv_ros.behaviours.person import ASK_AGAIN_S, PersonParameters, free_person
+from sailenv_ros.behaviours.person import Person, PersonParameters, in_turn, person_behaviour
 
 __all__ = ["Visit", "visit"]
 
@@ -21,27 +20,23 @@ class Visit(PersonParameters):
     )
 
 
-@behaviour("visit", Visit)
+@person_behaviour("visit", Visit)
 def visit(
     parameters: Visit,
     time_s: float,
-    body: BodyState,
+    person: Person,
     memory: dict[str, Any],
     rng: np.random.Generator,
-) -> Action:
+) -> bool:
     """Walk to one object after another, and look at each."""
-    person = free_person(parameters, time_s, body, memory, rng)
-    if person is None:
-        return Action()
-    names = parameters.objects or person.things()
-    if names:
-        number = int(memory.get("number", -1)) + 1
-        if not parameters.objects:
-            number = int(rng.integers(len(names)))
-        memory["number"] = number
-        name = names[number % len(names)]
-        if person.walk_near(name):
-            person.look_at(name)
-            return Action()
-    memory["until_s"] = time_s + ASK_AGAIN_S
-    return Action()
+    if parameters.objects:
+        name = in_turn(parameters.objects, memory)
+    else:
+        seen = person.things()
+        if not seen:
+            return False
+        name = seen[int(rng.integers(len(seen)))]
+    if not person.walk_near(name):
+        return False
+    person.look_at(name)
+    return True
