@@ -1,4 +1,4 @@
-"""Steps per second of environments, beside the same loop by `Simulation`; bytes; memory.
+"""Steps per second of environments, beside `Simulation` and other renderers; bytes; memory.
 
     python -m benchmarks.gym_speed speed [--steps N] [--rooms N] [--envs N] [--processes N]
     python -m benchmarks.gym_speed bytes [--steps N]      equal in two processes and with 2 workers
@@ -25,7 +25,10 @@ import gymnasium
 import numpy as np
 
 import sailenv_ros.gym
+from sailenv_bench.experiments.baselines import BASELINES
 from sailenv_ros import AgentSpec, CameraIntrinsics, Pose, Simulation
+from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.picture_settings import PictureSettings
 
 TASK = "sailenv/PointNav-v0"
@@ -96,7 +99,7 @@ def measure_simulation(arguments: argparse.Namespace) -> None:
         with Simulation(
             room, mode="lockstep", light="plain", backend="native", agent=agent
         ) as simulation:
-            place = simulation.random_pose("start", height_m=1.3, radius_m=0.2).position_m
+            place = start_of(simulation)
             count = arguments.steps // 4
 
             def run(
@@ -116,6 +119,36 @@ def measure_simulation(arguments: argparse.Namespace) -> None:
             run(count)
             wall, cpu = time.perf_counter() - began, time.process_time() - used
         report(f"Simulation, {name}", count, wall, cpu, None)
+
+
+def start_of(simulation: Simulation) -> tuple[float, float, float]:
+    """Return a place from which all loops look around [m]."""
+    return simulation.random_pose("start", height_m=1.3, radius_m=0.2).position_m
+
+
+def measure_others(arguments: argparse.Namespace) -> None:
+    """Print the same for renderers of PyBullet and MuJoCo: picture, depth, ids; no physics."""
+    room = sailenv_ros.gym.room_names(1)[0]
+    world = SceneLibrary().build(room)
+    snapshot = world.snapshot()
+    with Simulation(room, mode="lockstep", light="plain", backend="native") as simulation:
+        x_m, y_m, _ = start_of(simulation)
+    for side in (84, 224):
+        lens = CameraIntrinsics(width=side, height=side, vertical_fov_deg=75.0)
+        for name in ("sailenv_ros", "PyBullet TinyRenderer", "MuJoCo"):
+            picture = BASELINES[name][1]()
+            count = max(20, arguments.steps // 40)
+            began = used = 0.0
+            for number in range(-3, count):
+                if number == 0:
+                    began, used = time.perf_counter(), time.process_time()
+                pose = Pose.from_rpy_deg((x_m, y_m, 1.2), (0.0, 0.0, 15.0 * number))
+                picture.prepare(snapshot, Camera(intrinsics=lens, pose=pose))
+                picture.draw()
+            wall, cpu = time.perf_counter() - began, time.process_time() - used
+            picture.close()
+            report(f"renderer alone, {name}, {side}×{side}", count, wall, cpu, None)
+    world.close()
 
 
 def report(name: str, steps: int, wall: float, cpu: float, goal: int | None) -> None:
@@ -203,6 +236,7 @@ def main() -> None:
     if arguments.what == "speed":
         measure_environments(arguments)
         measure_simulation(arguments)
+        measure_others(arguments)
     else:
         {"bytes": compare_bytes, "digest": digest_of, "memory": measure_memory}[arguments.what](
             arguments

@@ -137,6 +137,20 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
     # -- episodes --------------------------------------------------------------------------
 
     @property
+    def eye_pose(self) -> Pose:
+        """Where the eye is now."""
+        return self._eye_pose()
+
+    @property
+    def moved(self) -> dict[str, Pose]:
+        """Poses of what the episode moves, by names of objects; empty where nothing moves."""
+        instances = self.room.snapshot.contents.instances
+        return {
+            instances[row].instance.name: Pose.from_matrix(pose)
+            for row, pose in self._places().items()
+        }
+
+    @property
     def room(self) -> Room:
         """The room of the episode.
 
@@ -250,7 +264,7 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
             return None
         scene = self.room.scene_at(self.time_ns, self._places())
         picture = Eye("rgb", self.eye.intrinsics, self.eye.picture)
-        return np.array(picture.look(self.room, scene, self._eye_pose(), None).views["rgb"])
+        return np.array(picture.look(self.room, scene, self.eye_pose, None).views["rgb"])
 
     def close(self) -> None:
         """Leave the room; a second call does nothing. With the last one everything is freed."""

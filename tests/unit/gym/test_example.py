@@ -7,7 +7,10 @@ import runpy
 import sys
 from pathlib import Path
 
+import gymnasium
 import pytest
+
+from sailenv_ros.gym.room_env import RoomEnv
 
 EXAMPLE = Path(__file__).resolve().parents[3] / "examples" / "18_acting.py"
 
@@ -23,3 +26,24 @@ def test_the_scripted_agent_keeps_the_object_centred(
     assert said
     assert int(said[1]) > 100
     assert picture.stat().st_size > 500
+
+
+def test_the_web_viewer_shows_where_eye_and_target_are(room: str) -> None:
+    """Both are in the watched simulation where they are in the environment, after each step."""
+    made = runpy.run_path(str(EXAMPLE))
+    env = gymnasium.make("sailenv/Track-v0", rooms=[room], views="instance")
+    env.reset(seed=0)
+    inside = env.unwrapped
+    assert isinstance(inside, RoomEnv)
+    watched = made["Watched"](inside, 0)
+    try:
+        for _ in range(3):
+            env.step(made["LEFT"])
+            watched.show(inside)
+            simulation = watched.simulation
+            assert simulation.get_pose() == inside.eye_pose
+            placed = simulation.get_object("target").pose.position_m
+            assert placed == pytest.approx(inside.moved["target"].position_m, abs=1e-6)
+    finally:
+        watched.close()
+        env.close()
