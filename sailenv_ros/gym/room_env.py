@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest, InvalidState, UnknownName
 from sailenv_ros.gym.eye import Eye, Look
 from sailenv_ros.gym.room import OwnObject, Room, RoomOrder
-from sailenv_ros.gym.room_settings import FAST_PICTURE
+from sailenv_ros.gym.room_settings import FAST_PICTURE, STEP_NS, THREADS
 from sailenv_ros.gym.room_store import shared_rooms
 from sailenv_ros.gym.room_table import KINDS, room_names
 from sailenv_ros.native.library import thread_count
@@ -26,21 +26,15 @@ from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.listed_views import Views
 from sailenv_ros.types.picture_settings import PictureSettings
-from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
 from sailenv_ros.types.snapshot import Observation
-from sailenv_ros.types.validation import Bounds, checked_flag
+from sailenv_ros.types.validation import checked_flag
 
-__all__ = ["STEP_NS", "Arrays", "Info", "RoomEnv"]
+__all__ = ["Arrays", "Info", "RoomEnv"]
 
 Arrays: TypeAlias = dict[str, NDArray[Any]]
 """An observation by the names of the spaces."""
 
 Info: TypeAlias = dict[str, Any]
-
-STEP_NS = round(8e9 / STEPS_PER_SECOND)
-"""Simulated time of one step: eight steps of physics, 1/30 s [ns]."""
-
-THREADS = Bounds(least=1, most=256, whole=True)
 
 
 class RoomEnv(gymnasium.Env[Arrays, Any]):
@@ -144,11 +138,7 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
     @property
     def moved(self) -> dict[str, Pose]:
         """Poses of what the episode moves, by names of objects; empty where nothing moves."""
-        instances = self.room.snapshot.contents.instances
-        return {
-            instances[row].instance.name: Pose.from_matrix(pose)
-            for row, pose in self._places().items()
-        }
+        return self.room.named(self._places())
 
     @property
     def room(self) -> Room:
@@ -262,8 +252,8 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
         """Return the picture (H, W, 3) of now; None without a `render_mode`."""
         if self.render_mode is None:
             return None
-        scene = self.room.scene_at(self.time_ns, self._places())
         picture = Eye("rgb", self.eye.intrinsics, self.eye.picture)
+        scene = self.room.scene_at(self.time_ns, self._places())
         return np.array(picture.look(self.room, scene, self.eye_pose, None).views["rgb"])
 
     def close(self) -> None:
@@ -328,14 +318,8 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
     def _enter(self, name: str) -> None:
         if self._room is not None and self._room.name == name:
             return
-        order = RoomOrder(
-            name,
-            self.body,
-            self._own_objects(name),
-            self._baked,
-            min(self._threads, thread_count()),
-            self.opens,
-        )
+        own, threads = self._own_objects(name), min(self._threads, thread_count())
+        order = RoomOrder(name, self.body, own, self._baked, threads, self.opens)
         entered = self._store.enter(order)
         self._leave()
         self._room = entered
@@ -350,6 +334,7 @@ class RoomEnv(gymnasium.Env[Arrays, Any]):
         scene = room.scene_at(self.time_ns, self._places())
         look = self.eye.look(room, scene, self._eye_pose(), self._past, self.needs)
         self._past = look.past
+        room.was_drawn()
         return look
 
     def _observation(self, look: Look, out: Mapping[str, NDArray[Any]] | None) -> Arrays:

@@ -9,8 +9,15 @@ from typing_extensions import TypedDict
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.listed_views import Views
 from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
+from sailenv_ros.types.validation import Bounds
 
-__all__ = ["FAST_PICTURE", "RoomSettings"]
+__all__ = ["FAST_PICTURE", "STEP_NS", "THREADS", "RoomSettings"]
+
+STEP_NS = round(8e9 / STEPS_PER_SECOND)
+"""Simulated time of one step: eight steps of physics, 1/30 s [ns]."""
+
+THREADS = Bounds(least=1, most=256, whole=True)
 
 FAST_PICTURE = PictureSettings(smooth_edges=False)
 """Pictures unless told otherwise: edges are not smoothed, which takes longer than all else."""

@@ -20,8 +20,8 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.gym.eye import Look
 from sailenv_ros.gym.ground import away_from, random_cell
 from sailenv_ros.gym.room import OwnObject
-from sailenv_ros.gym.room_env import STEP_NS, Info, RoomEnv
-from sailenv_ros.gym.room_settings import RoomSettings
+from sailenv_ros.gym.room_env import Info, RoomEnv
+from sailenv_ros.gym.room_settings import STEP_NS, RoomSettings
 from sailenv_ros.gym.walker import Walker
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.validation import Bounds

@@ -10,7 +10,8 @@ from gymnasium import spaces
 
 from sailenv_ros.errors import InvalidRequest, InvalidState
 from sailenv_ros.gym.retina import Retina
-from sailenv_ros.gym.room_env import STEP_NS, Arrays, RoomEnv
+from sailenv_ros.gym.room_env import Arrays, RoomEnv
+from sailenv_ros.gym.room_settings import STEP_NS
 
 __all__ = ["LogPolarRetina", "Motion", "room_env", "spaces_of"]
 
