@@ -9,7 +9,6 @@ from types import MappingProxyType
 
 from sailenv_content.people.fetch_bodies import BODIES_COMMAND, body_data
 from sailenv_content.people.looks import people
-from sailenv_content.people.making import make_person
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.types.model import Asset
 
@@ -64,6 +63,8 @@ class PeopleSource:
         data = body_data()
         if data is None:
             raise AssetError(name, f"the data of bodies is not here; fetch it: {BODIES_COMMAND}")
+        from sailenv_content.people.making import make_person  # imports SciPy
+
         whole = name.removesuffix(IN_PARTS)
         with _lock:
             found = _made.get(name)

@@ -35,7 +35,9 @@ class AgentTable:
         """Return an agent by its name; None means the first."""
         if name is None:
             if not self._records:
-                raise InvalidState("there is no agent; register one first")
+                raise InvalidState(
+                    "there is no agent; call register_agent, or give Simulation an agent or a width"
+                )
             return next(iter(self._records.values()))
         if not isinstance(name, str) or name not in self._records:
             raise UnknownName("agent", str(name), self._records)

@@ -55,6 +55,13 @@ def test_importing_the_simulation_leaves_out_what_few_need() -> None:
     assert run(code + f"print([m for m in {few!r} if m in sys.modules])") == "[]"
 
 
+def test_a_first_frame_needs_no_scipy() -> None:
+    """Nor does opening the assets, people among them: importing it takes as long as the frame."""
+    code = "import sys; from sailenv_ros import Simulation\n"
+    code += "with Simulation('optical', width=64, height=48) as made: made.capture('rgb')\n"
+    assert run(code + "print('scipy' in sys.modules)") == "False"
+
+
 def test_the_simulation_needs_no_ros() -> None:
     """Simulator and scene loader can be had where there is no ROS."""
     code = "import sys, sailenv_ros; sailenv_ros.Simulation; sailenv_ros.load_scene; "

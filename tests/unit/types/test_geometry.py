@@ -117,6 +117,14 @@ def test_interpolation_begins_and_ends_where_it_should(start: Pose, end: Pose) -
     assert to_start <= math.pi / 2 + 1e-6
 
 
+@given(POSES, POSES, st.floats(0.0, 1.0))
+def test_interpolation_turns_bit_for_bit_as_scipy(start: Pose, end: Pose, share: float) -> None:
+    turn = Rotation.from_quat(start.orientation_xyzw)
+    whole = (turn.inv() * Rotation.from_quat(end.orientation_xyzw)).as_rotvec()
+    expected = Pose((0.0, 0.0, 0.0), (turn * Rotation.from_rotvec(whole * share)).as_quat())
+    assert interpolate(start, end, share).orientation_xyzw == expected.orientation_xyzw
+
+
 BAD = [
     ({"position_m": (0, 0)}, "position must be three finite numbers within ±10000, got (0, 0)"),
     ({"position_m": (0, math.nan, 0)}, "position must be three finite numbers within ±10000"),
