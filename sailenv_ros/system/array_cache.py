@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.system.files import file_lock, remove_unfinished, write_file
+from sailenv_ros.system.mapped_file import mapped_file
 from sailenv_ros.system.user_folders import cache_folder, remove_oldest
 
 __all__ = ["Arrays", "array_folder", "cached_arrays", "code_digest", "damaged_arrays"]
@@ -132,13 +133,12 @@ def _processor() -> str:
 
 def _read(path: Path) -> Arrays | None:
     try:
-        data = np.fromfile(path, np.uint8)
+        data = mapped_file(path)
     except FileNotFoundError:
         return None
     except OSError as problem:
         _log.warning("%s cannot be read (%s)", path, problem)
         return None
-    data.flags.writeable = False
     try:
         arrays = _parsed(data)
     except (ValueError, KeyError, TypeError) as problem:

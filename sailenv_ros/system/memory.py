@@ -11,6 +11,7 @@ import ctypes
 import resource
 
 from sailenv_ros.errors import InvalidState
+from sailenv_ros.system.mapped_file import give_back_pages
 
 __all__ = ["give_back_freed_memory", "keep_freed_memory", "no_memory", "require_address_space"]
 
@@ -38,11 +39,12 @@ def keep_freed_memory() -> bool:
 
 
 def give_back_freed_memory() -> None:
-    """Have this process give back what it keeps free, where the C library is glibc.
+    """Have this process give back mapped files and, where the C library is glibc, what it keeps free.
 
     In sim_node's way of keeping memory, twelve changes among the three rooms: 0.9 to 2.0 GiB with
     it, 2.0 to 2.2 GiB without; it takes 55 ms at most.
     """
+    give_back_pages()
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).malloc_trim(0)
 
