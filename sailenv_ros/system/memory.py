@@ -39,7 +39,7 @@ def keep_freed_memory() -> bool:
 
 
 def give_back_freed_memory() -> None:
-    """Have this process give back mapped files and, where the C library is glibc, what it keeps free.
+    """Give back mapped files and, where the C library is glibc, what this process keeps free.
 
     In sim_node's way of keeping memory, twelve changes among the three rooms: 0.9 to 2.0 GiB with
     it, 2.0 to 2.2 GiB without; it takes 55 ms at most.
