@@ -7,13 +7,14 @@ import numpy as np
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import PieceMaterial, fabric
+from sailenv_content.families.parameters import Values
 from sailenv_content.families.shaping import Floats, cushion
 from sailenv_content.families.upholstery import pad
 from sailenv_content.procedural.forms import loft
 from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
 from sailenv_ros.types.model import Mesh
 
-__all__ = ["LINENS", "bedding", "draped"]
+__all__ = ["LINENS", "bedding", "draped", "throw_over_arm"]
 
 LINENS = tuple(
     fabric(c)
@@ -90,6 +91,17 @@ def _folds(b: PieceBuilder, x: Floats, y: Floats) -> Floats:
         along, across = b.rng.uniform(-9.0, 9.0, 2)
         total += np.sin(along * x[:, None] + across * y[None, :] + b.between(0.0, 6.28))
     return total / 4.0
+
+
+def throw_over_arm(b: PieceBuilder, v: Values, width: float) -> None:
+    """Lay a throw over an arm of a seat that has one, tucked in beside the seat."""
+    if v.all.get("throw") is None:
+        return
+    with b.part("throw", "blanket"):
+        sign, long = b.pick(-1.0, 1.0), b.between(0.3, 0.42)
+        mesh = draped(b, long, v.arm + 0.014, hang=0.7 * v.arm_height, thick=0.008, puff=0.006)
+        at = (0.1 * v.depth, sign * (width - v.arm) / 2, v.arm_height + 0.006)
+        b.form(v.throw, mesh, at, collides="none")
 
 
 def bedding(

@@ -222,15 +222,16 @@ class PieceBuilder:
         *,
         by: float,
         axis: Vector3 = (1.0, 0.0, 0.0),
+        back: float = 0.0,
         friction: float = 2.0,
         damping: float = 4.0,
     ) -> Iterator[None]:
-        """Add a part that slides by up to a length [m]."""
+        """Add a part that slides by up to a length, and back by another [m]."""
         joint = Joint(
             type="slide",
             axis=self._frame.direction(axis),
             origin_m=(0.0, 0.0, 0.0),
-            limits=(0.0, round(by, 4)),
+            limits=(-round(back, 4), round(by, 4)),
             friction=friction,
             effort=80.0,
             damping=damping,

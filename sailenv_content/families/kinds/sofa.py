@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from sailenv_content.families.bedding import throw_over_arm
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.joinery import four_legs, leg
@@ -32,6 +33,7 @@ def boxy(b: PieceBuilder, v: Values) -> None:
         )
     four_legs(b, v.frame, v.leg, d - 0.1, width - 0.12, base + 0.005, 0.045)
     loose_cushions(b, v, width, d)
+    throw_over_arm(b, v, width)
 
 
 def rolled(b: PieceBuilder, v: Values) -> None:
@@ -282,6 +284,7 @@ FAMILY = Family(
                 "legs": Span(0.05, 0.14),
                 "edge": Span(0.03, 0.07),
                 "leg": Choice("block", "round", "metal"),
+                "throw": Choice(None, None, *FABRICS[:3]),
             },
         ),
         "rolled": Style(
