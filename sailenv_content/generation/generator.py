@@ -18,12 +18,14 @@ from sailenv_content.generation.draft import Draft
 from sailenv_content.generation.furnishing import Furnisher
 from sailenv_content.generation.items import Item, Namer
 from sailenv_content.generation.lighting import environment_entry, light_entries
+from sailenv_content.generation.pieces import PieceChooser
 from sailenv_content.generation.plan import RoomPlan
 from sailenv_content.generation.room_agents import StandingWorld, agent_entries, best_first
 from sailenv_content.generation.route import mover_entry
 from sailenv_content.generation.scene_text import scene_text
 from sailenv_content.generation.shells import shell_of
 from sailenv_content.generation.things import lay_things
+from sailenv_content.generation.window_dressing import WindowDresser
 from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
@@ -172,6 +174,16 @@ class Generator:
                 namer=namer,
                 skirting_m=0.015 if skirting is not False else 0.0,
             )
+            dresser = WindowDresser(
+                area=area,
+                plan=plan,
+                rules=self._rules,
+                stock=self._stock,
+                dice=(window_dice := dice(f"windows of {area.name}")),
+                pieces=PieceChooser(window_dice, furnisher.pieces.style),
+                namer=namer,
+            )
+            furnisher.items += dresser.items()
             if not plan.connects(()):
                 return None
             if not furnisher.furnish(self._rules.kind(area.kind).furniture):

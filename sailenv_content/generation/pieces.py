@@ -88,6 +88,11 @@ class PieceChooser:
     def __init__(self, dice: RandomStream, style: RoomStyle | None = None) -> None:
         self._dice, self._style = dice, style
 
+    @property
+    def style(self) -> RoomStyle | None:
+        """What pieces are chosen to suit."""
+        return self._style
+
     def one_of(self, names: Sequence[str]) -> str:
         """Return an asset of several names, most often one of a seed: the others are few."""
         seeded = [name for name in names if name.endswith(ANY_SEED)]

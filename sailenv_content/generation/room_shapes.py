@@ -193,7 +193,7 @@ def add_openings(
                 else:
                     up = (size[1], round(size[1] + size[0], 2))
                     entry |= {"height": size[0], "sill": size[1]}
-                    if curtained:
+                    if curtained and rules.windows.hung is None:
                         entry["curtains"] = {"colour": list(cloth or ())}
                 span = (along - width / 2.0, along + width / 2.0)
                 holes[number].append(

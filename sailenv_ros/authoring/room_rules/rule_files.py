@@ -259,6 +259,14 @@ def _kind_errors(
                 if name not in known["furniture"]:
                     place = ("furniture", index, "unless", number)
                     yield _unknown("piece", place, name, known["furniture"])
+        for key in ("hung", "bare"):
+            put = getattr(file.windows, key)
+            if put is None:
+                continue
+            if put not in known["furniture"]:
+                yield _unknown("piece", ("windows", key), put, known["furniture"])
+            elif known["furniture"][put].window is None:
+                yield Diagnostic(("windows", key), f"must be a piece with window, got {put!r}")
         for key in ("materials", "light"):
             for index, name in enumerate(getattr(file, key)):
                 if name not in known[key]:

@@ -96,6 +96,16 @@ class CompanionRule(_RuleModel):
     ahead: _Length = Field(default=0.0, description="for `under`: off the middle, to its front [m]")
 
 
+class BeforeWindowRule(_RuleModel):
+    """The size of what hangs before a window: it is scaled to it."""
+
+    aside: _Length = Field(default=0.06, description="beyond the window, on each side [m]")
+    above: _Length = Field(default=0.08, description="beyond the window, upwards [m]")
+    floor: Annotated[bool, Switch()] = Field(
+        default=False, description="true: down to the floor, and drawn aside; false: to the sill"
+    )
+
+
 class FurnitureRule(_RuleModel):
     """A piece of furniture by its function."""
 
@@ -113,6 +123,7 @@ class FurnitureRule(_RuleModel):
     scale: Factor = Field(default=(1.0, 1.0), description="of its size")
     turn: Turn = Field(default=(0.0, 0.0), description="besides facing into the room [deg]")
     static: Annotated[bool, Switch()] = Field(default=True, description="false for what can fall")
+    window: BeforeWindowRule | None = optional("of what hangs before a window: how large")
     flat: Annotated[bool, Switch()] = Field(
         default=False, description="true for rugs: others may stand on it"
     )
@@ -233,7 +244,10 @@ class WindowRule(_RuleModel):
     width: Metres = Field(default=(1.0, 1.8), description="[m]")
     height: Metres = Field(default=(1.2, 1.45), description="[m]")
     sill: Metres = Field(default=(0.85, 0.95), description="height of the lower edge [m]")
-    curtains: Fraction = Field(default=0.5, description="share of windows that have some")
+    curtains: Fraction = Field(default=0.5, description="share of rooms that have some")
+    hung: _Name | None = optional("piece that is hung as curtains; none: plain ones")
+    bare: _Name | None = optional("piece that may hang before windows without curtains")
+    blinds: Fraction = Field(default=0.0, description="share of those rooms in which it does")
 
 
 class OpeningRule(_RuleModel):
