@@ -92,9 +92,11 @@ def _slanted(b: PieceBuilder, v: Values) -> None:
         (0.1, 0.0, tall + (h - tall) / 2 + 0.03),
         bevel=0.003,
     )
-    length = tall / c
+    gap = 0.03
+    length = tall / c - gap
     at = (0.09, 0.0, tall)
-    mid = (0.09 + s * length / 2 + 0.02, 0.0, tall - c * length / 2 + 0.024)
+    reach = gap + length / 2
+    mid = (0.11 + s * reach, 0.0, tall - c * reach + 0.02)
     with b.hinge("plate", "hood", at=at, axis=(0.0, -1.0, 0.0), opens_deg=25.0, friction=6.0):
         b.box(v.plate, (0.008, w, length), mid, turn=(0.0, -lean, 0.0), bevel=0.002)
         grip = (mid[0] + s * 0.4 * length + 0.008, 0.0, mid[2] - c * 0.4 * length + 0.008)

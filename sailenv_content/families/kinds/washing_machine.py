@@ -83,7 +83,9 @@ def _front_loader(
     b.form(v.body, tube, (front - 0.04, 0.0, z), collides="none", volume=2e-4)
     drum(b, v, front - 0.02, min(0.36, d - 0.14), radius + 0.035, z)
     _porthole(b, v, front + 0.018, radius, z, f"{prefix}door")
-    top = Box((front, -w / 2, base + h - 0.028 - panel), (front + 0.018, w / 2, base + h - 0.028))
+    top = Box(
+        (front + 0.002, -w / 2, base + h - 0.028 - panel), (front + 0.018, w / 2, base + h - 0.028)
+    )
     share = 0.3 if drawer else 0.0
     left = Box((top.low[0], top.high[1] - share * w, top.low[2]), top.high).inset(0.002)
     rest = Box(top.low, (top.high[0], top.high[1] - share * w, top.high[2]))
