@@ -30,7 +30,7 @@ from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
 
 Row = dict[str, Any]
-"""One room: kind, seed, wall_s, cpu_s, objects, attempts, taken_out, checked, faults, state."""
+"""A room: kind, seed, wall_s, cpu_s, objects, assets, attempts, taken_out, checked, faults, state."""
 
 
 class Judge:
@@ -61,6 +61,7 @@ class Judge:
         row["wall_s"] = round(time.perf_counter() - wall, 3)
         row["cpu_s"] = round(time.process_time() - cpu, 3)
         row["objects"], row["attempts"] = len(made.spec.objects), made.attempts
+        row["assets"] = sorted({entry.asset for entry in made.spec.objects})
         row["taken_out"] = [fault.why for fault in made.taken_out]
         row["checked"] = seed % self._every == 0
         try:
@@ -152,14 +153,15 @@ def _report(rows: list[Row]) -> int:
     faulty = sum(bool(row["faults"]) for row in rows)
     checked = sum(row["checked"] for row in rows)
     print(f"{len(rows)} rooms, {checked} checked anew, {faulty} with a fault")
-    print(f"{'kind':<12} rooms  median [s]  slowest [s]  processor [s]  objects  drawn")
+    print(f"{'kind':<12} rooms  median [s]  slowest [s]  processor [s]  objects  drawn  different")
     for kind in (*sorted({row["kind"] for row in rows}), "all"):
         made = [r for r in rows if kind in (r["kind"], "all") and "wall_s" in r]
         if made:
             print(
                 f"{kind:<12} {len(made):5d} {_middle(made, 'wall_s'):11.1f} "
                 f"{max(r['wall_s'] for r in made):12.1f} {_middle(made, 'cpu_s'):14.1f} "
-                f"{_middle(made, 'objects'):8.0f} {sum(_of(made, 'attempts')) / len(made):6.2f}"
+                f"{_middle(made, 'objects'):8.0f} {sum(_of(made, 'attempts')) / len(made):6.2f} "
+                f"{len({asset for r in made for asset in r['assets']}):10d}"
             )
     return int(faulty > 0)
 
