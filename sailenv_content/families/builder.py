@@ -154,6 +154,11 @@ class PieceBuilder:
         mesh = self._frame.mesh(placed(mesh, at, turn))
         self._at.shapes.append(convex_hull(mesh.positions.astype(np.float64)))
 
+    def collide_points(self, points: ArrayLike) -> None:
+        """Add the hull of points (N, 3), all of them corners of it, that is not drawn."""
+        corners = [self._frame.point(point) for point in np.asarray(points, np.float64)]
+        self._at.shapes.append(ConvexShape(points=np.array(corners)))
+
     @contextmanager
     def frame(self, at: ArrayLike = (0.0, 0.0, 0.0), yaw_deg: float = 0.0) -> Iterator[None]:
         """Place all that is added inside: turned about z [deg], then shifted [m]."""

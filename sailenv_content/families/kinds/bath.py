@@ -6,6 +6,7 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.hollows import tub_walls, vessel_walls
 from sailenv_content.families.lathe import closed_ring, scaled, smooth_profile, vessel
 from sailenv_content.families.materials import WOODS, glass, metal, paint, wood
 from sailenv_content.families.parameters import Choice, Span, Values
@@ -22,7 +23,8 @@ def _built(b: PieceBuilder, v: Values) -> None:
     """Make a tub with straight sides of tiles or boards; one lies along y."""
     d, w, h = v.depth, v.length, v.height
     mesh = tub((d, w, h - 0.1), wall=v.rim, floor=0.05, radius=0.03, slope=0.07)
-    b.form(ENAMEL, mesh, (0.0, 0.0, 0.1), volume=0.03)
+    b.form(ENAMEL, mesh, (0.0, 0.0, 0.1), collides="none", volume=0.03)
+    tub_walls(b, (d, w, h - 0.1), wall=v.rim, floor=0.05, slope=0.07, at=(0.0, 0.0, 0.1))
     for sx in (-1.0, 1.0):
         b.box(
             v.side,
@@ -68,8 +70,10 @@ def _oval_tub(b: PieceBuilder, v: Values, low: float, *, rolled: bool) -> None:
         v.outside,
         scaled(vessel(rows, wall=0.028, floor=0.05, segments=56), stretch),
         (0, 0, low),
+        collides="none",
         volume=0.03,
     )
+    vessel_walls(b, rows, wall=0.029, floor=0.055, at=(0, 0, low), oval=stretch[1], sectors=14)
     inside = rows[rows[:, 1] > 0.1 * tall] - np.array([0.0285, 0.0])
     inside[-1, 1] += 0.001
     lining = closed_ring([*inside, *(inside[::-1] - np.array([0.001, 0.0]))], segments=56)
@@ -139,7 +143,8 @@ def _wooden(b: PieceBuilder, v: Values) -> None:
     mesh = vessel(
         rows, wall=0.035, floor=0.08, segments=v.staves, tile_m=v.timber.tile_m, crease_deg=8.0
     )
-    b.form(v.timber, scaled(mesh, stretch), volume=0.06)
+    b.form(v.timber, scaled(mesh, stretch), collides="none", volume=0.06)
+    vessel_walls(b, rows, wall=0.035, floor=0.08, oval=v.stretch, sectors=12, bands=1)
     for share in (0.2, 0.8):
         x = r * (0.94 + 0.06 * share) + 0.003
         z = share * h
@@ -154,7 +159,9 @@ def _wooden(b: PieceBuilder, v: Values) -> None:
 def _shower(b: PieceBuilder, v: Values) -> None:
     """Make a cabin: a tray, walls of glass at two sides, a door of glass that turns."""
     s, h = v.cabin, v.tall
-    b.form(ENAMEL, tub((s, s, 0.1), wall=0.04, floor=0.06, radius=0.02, slope=0.02), volume=0.01)
+    tray = tub((s, s, 0.1), wall=0.04, floor=0.06, radius=0.02, slope=0.02)
+    b.form(ENAMEL, tray, collides="none", volume=0.01)
+    tub_walls(b, (s, s, 0.1), wall=0.04, floor=0.06, slope=0.02)
     drain(b, 0.0, 0.0, 0.061)
     pane = glass(v.tint, 0.18)
     wall, edge = s / 2 - 0.02, 0.1

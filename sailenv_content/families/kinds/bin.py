@@ -6,6 +6,7 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.hollows import vessel_walls
 from sailenv_content.families.lathe import closed_ring, vessel
 from sailenv_content.families.materials import metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values
@@ -24,7 +25,8 @@ def _pedal(b: PieceBuilder, v: Values) -> None:
     ring = [(r + 0.004, 0.0), (r + 0.004, 0.03), (r, 0.032)]
     b.form(BLACK, turned([(0, 0), *ring, (0, 0.032)], segments=36))
     rows = [(r, 0.032), (r, h)]
-    b.form(v.coat, vessel(rows, wall=0.004, floor=0.006, segments=40))
+    b.form(v.coat, vessel(rows, wall=0.004, floor=0.006, segments=40), collides="none")
+    vessel_walls(b, rows, wall=0.004, floor=0.006, bands=1)
     z = h + 0.0035
     with b.hinge(
         "lid",
@@ -113,7 +115,8 @@ def _paper(b: PieceBuilder, v: Values) -> None:
             b.form(v.metal, closed_ring(ring, segments=36), collides="none", volume=1e-5)
         b.hull(turned([(0, 0), *rows, (0, h)], segments=14), (0, 0, 0))
     else:
-        b.form(v.coat, vessel(rows, wall=0.004, floor=0.006, segments=36))
+        b.form(v.coat, vessel(rows, wall=0.004, floor=0.006, segments=36), collides="none")
+        vessel_walls(b, rows, wall=0.004, floor=0.006, bands=1)
     sheet = paint("#e9e6df", 0.85, 300.0)
     ball = [(0, 0), (0.7, 0.25), (1.0, 0.9), (0.75, 1.55), (0, 1.8)]
     for number in range(v.sheets):

@@ -8,6 +8,7 @@ from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.contents import FRUIT
 from sailenv_content.families.crockery import CLEAR, GLAZES, band, grained
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.hollows import vessel_walls
 from sailenv_content.families.lathe import scaled, smooth_profile, vessel
 from sailenv_content.families.materials import WOODS, glass, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values
@@ -52,7 +53,9 @@ def _bowl(b: PieceBuilder, v: Values) -> None:
     rows = smooth_profile(np.array(v.profile) * (v.radius, v.height), 22)
     floor = float(np.array(v.profile)[v.bottom, 1]) * v.height + 1.5 * v.wall
     mesh = vessel(rows, wall=v.wall, floor=floor, segments=44)
-    b.form(v.material, scaled(grained(mesh, v.material), (1.0, v.oval, 1.0)))
+    whole = scaled(grained(mesh, v.material), (1.0, v.oval, 1.0))
+    b.form(v.material, whole, collides="none")
+    vessel_walls(b, rows, wall=v.wall, floor=floor, oval=v.oval, sectors=8)
     if v.banded and v.oval == 1.0:
         band(b, v.second, rows, 0.9 * v.height, 0.985 * v.height, segments=44)
     if v.fruit and v.radius > 0.1:

@@ -7,6 +7,7 @@ import numpy as np
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.crockery import GLAZES, band
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.hollows import vessel_walls
 from sailenv_content.families.lathe import closed_ring, smooth_profile, vessel
 from sailenv_content.families.materials import PieceMaterial, glass, metal, paint, wood
 from sailenv_content.families.parameters import Choice, Span, Values
@@ -19,18 +20,6 @@ CLEAR = glass("#dfe8e6", 0.3)
 RUBBER = paint("#c9562e", 0.6, 1100.0)
 
 
-def _walls(b: PieceBuilder, rows: Floats, floor: float) -> None:
-    """Let a vessel collide as a floor and a ring of boards, so that it stays hollow."""
-    radius, tall, count = float(rows[:, 0].min()), float(rows[-1, 1]), 8
-    b.collide((1.7 * radius, 1.7 * radius, floor), (0.0, 0.0, floor / 2))
-    wide = 2.0 * radius * np.tan(np.pi / count)
-    for number in range(count):
-        turn = 360.0 * number / count
-        c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
-        at = (c * (radius - 0.003), s * (radius - 0.003), tall / 2)
-        b.collide((0.006, wide, tall), at, (0.0, 0.0, turn))
-
-
 def _body(b: PieceBuilder, v: Values, material: PieceMaterial, rows: Floats) -> None:
     """Add a vessel and what is in it."""
     see_through = material.surface.alpha == "blend"
@@ -38,7 +27,7 @@ def _body(b: PieceBuilder, v: Values, material: PieceMaterial, rows: Floats) -> 
     b.form(
         material, vessel(rows, wall=wall, floor=0.005, segments=36), collides="none", volume=6e-5
     )
-    _walls(b, rows, 0.006)
+    vessel_walls(b, rows, wall=wall, floor=0.005, sectors=8, bands=1)
     if not see_through:
         return
     top = v.filled * rows[-1, 1]

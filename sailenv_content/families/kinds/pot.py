@@ -6,6 +6,7 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.hollows import vessel_walls
 from sailenv_content.families.lathe import smooth_profile, vessel
 from sailenv_content.families.materials import glass, metal, paint, wood
 from sailenv_content.families.parameters import Choice, Span, Values
@@ -17,7 +18,9 @@ __all__ = ["FAMILY"]
 
 def _body(b: PieceBuilder, v: Values) -> None:
     rows = smooth_profile(np.array(v.profile) * (v.radius, v.height), 18)
-    b.form(v.material, vessel(rows, wall=v.wall, floor=1.5 * v.wall, segments=44))
+    mesh = vessel(rows, wall=v.wall, floor=1.5 * v.wall, segments=44)
+    b.form(v.material, mesh, collides="none")
+    vessel_walls(b, rows, wall=v.wall, floor=1.5 * v.wall)
 
 
 def _lid(b: PieceBuilder, v: Values, *, rise: float = 0.12) -> None:

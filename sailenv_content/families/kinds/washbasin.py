@@ -10,6 +10,7 @@ from sailenv_content.families.contents import stores
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M
 from sailenv_content.families.hollow import Box
+from sailenv_content.families.hollows import tub_walls, vessel_walls
 from sailenv_content.families.lathe import scaled, smooth_profile, vessel
 from sailenv_content.families.materials import WOODS, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values
@@ -29,7 +30,8 @@ def _basin(b: PieceBuilder, v: Values, depth: float, width: float, low: float, h
     mesh = tub(size, wall=0.03, floor=0.03, radius=v.corner, taper=v.taper, slope=0.05)
     x = ledge - 0.02 + size[0] / 2
     with b.part("basin", "sink"):
-        b.form(CERAMIC, mesh, (x, 0.0, low), volume=0.006)
+        b.form(CERAMIC, mesh, (x, 0.0, low), collides="none", volume=0.006)
+        tub_walls(b, size, wall=0.03, floor=0.03, taper=v.taper, slope=0.05, at=(x, 0.0, low))
         flat = width - 1.9 * max(0.0, v.corner - 0.03)
         b.box(CERAMIC, (ledge, flat, 0.075), (ledge / 2, 0.0, high - 0.0375), bevel=0.012)
         drain(b, x, 0.0, low + 0.031)
@@ -108,7 +110,9 @@ def _bowl(b: PieceBuilder, v: Values) -> None:
     x = d - r - 0.012
     with b.part("basin", "sink"):
         mesh = vessel(rows, wall=0.012, floor=0.02, segments=44)
-        b.form(v.bowl, scaled(mesh, (1.0, v.oval, 1.0)), (x, v.shift * w, low), volume=0.002)
+        place = (x, v.shift * w, low)
+        b.form(v.bowl, scaled(mesh, (1.0, v.oval, 1.0)), place, collides="none", volume=0.002)
+        vessel_walls(b, rows, wall=0.012, floor=0.02, at=place, oval=v.oval)
         drain(b, x, v.shift * w, low + 0.0205)
     reach = max(0.12, x - 0.06)
     tap(b, v.metal, 0.045, v.shift * w, low, kind="pillar", reach=reach, rise=v.bowl_m + 0.2)

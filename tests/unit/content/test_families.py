@@ -21,6 +21,7 @@ from sailenv_content.families.names import PieceName
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
 from sailenv_content.families.registry import family_named, family_names
 from sailenv_content.families.source import FamilySource
+from sailenv_ros.assets.arranging import shape_points, support_heights
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.errors import AssetError, SceneError, UnknownName
@@ -150,6 +151,35 @@ def test_what_opens_stands_where_it_is_drawn_in_the_whole(
         assert {id(one.mesh) for one in apart} == {id(one.mesh) for one in asset.model.parts}
         masses = asset.still.mass_kg + sum(part.asset.mass_kg for part in asset.moving)
         assert masses == pytest.approx(asset.mass_kg, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "at", "low_m", "high_m"),
+    [
+        ("bowl~salad:0", (0.0, 0.0), 0.005, 0.03),
+        ("pot~stock:1", (0.0, 0.0), 0.002, 0.02),
+        ("bath~built_in:2", (0.0, 0.3), 0.145, 0.155),
+        ("bath~wooden:0", (0.0, 0.0), 0.075, 0.085),
+        ("jar~screw:0", (0.0, 0.0), 0.003, 0.007),
+    ],
+)
+def test_what_is_hollow_carries_on_its_floor(
+    name: str, at: tuple[float, float], low_m: float, high_m: float
+) -> None:
+    """A thing that is laid into it lies on the inner floor; on the rim, as high as the rim."""
+    asset = LIBRARY.get(name)
+    still = asset if asset.still is None else asset.still
+    (height,) = support_heights(still, (1.0, 1.0, 1.0), np.array([at]))
+    assert low_m <= height <= high_m
+    low, high = shape_bounds(still)
+    for edge in (high[1], low[1]):
+        (rim,) = support_heights(still, (1.0, 1.0, 1.0), np.array([[0.0, 0.99 * edge]]))
+        assert rim > 3.0 * height
+
+
+def shape_bounds(asset: Asset) -> tuple[np.ndarray, np.ndarray]:
+    points = shape_points(asset.collision)
+    return points.min(axis=0), points.max(axis=0)
 
 
 OPENING = (
