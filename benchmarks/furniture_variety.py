@@ -3,14 +3,15 @@
     python -m benchmarks.furniture_variety --model nanodet_coco_416.onnx --pieces 24
 
 Each piece is pictured on a plain floor. Variety is the mean cosine distance between two pieces of a
-category, in the features of the last stage of the network's backbone, averaged over the picture. A
-piece is named if the network finds its category, with a score of at least 0.3, in one of two views.
+category, in the features of the last stage of the network's backbone, averaged over the picture;
+`unlike` is how many pieces there are of which no two are nearer than 0.04. A piece is named if the
+network finds its category, with a score of at least 0.3, in one of two views.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,10 @@ from sailenv_ros.simulation.models.preview_renderer import PreviewRenderer
 
 AZIMUTHS_DEG = (32.0, -20.0)
 LEAST_SCORE = 0.3
+UNLIKE = 0.04
+"""Cosine distance of two pieces that look unlike."""
+
+TABLE = "  apart  unlike  named"
 SIDE_PX = 416
 
 _GRAPH, _NODE, _OUTPUT, _OF_NODE = 7, 1, 12, 2
@@ -126,8 +131,8 @@ def groups(count: int) -> Iterator[tuple[str, list[str], list[str]]]:
 
 def judged(
     names: Sequence[str], category: str, library: AssetLibrary, net: Network, eyes: Any
-) -> Mapping[str, float]:
-    """Return the mean distance of two pieces, and the share that is named."""
+) -> tuple[float, int, float]:
+    """Return the mean distance of two pieces, how many are unlike, and the share that is named."""
     features, named = [], 0
     for name in names:
         views = [
@@ -140,34 +145,39 @@ def judged(
         named += any(scores.get(category, 0.0) >= LEAST_SCORE for _, scores in views)
     apart = 1.0 - np.array(features) @ np.array(features).T
     pairs = apart[np.triu_indices(len(names), 1)]
-    return {"apart": float(pairs.mean()) if len(pairs) else 0.0, "named": named / len(names)}
+    kept: list[int] = []
+    for number in range(len(names)):
+        if all(apart[number, other] >= UNLIKE for other in kept):
+            kept.append(number)
+    return float(pairs.mean()) if len(pairs) else 0.0, len(kept), named / len(names)
 
 
 def main() -> int:
-    """Print a line for each category that the network knows."""
+    """Print a line for each category that the network knows, and means over them."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--model", type=Path, required=True, help="a NanoDet of COCO, .onnx")
     parser.add_argument("--pieces", type=int, default=24, help="pieces from seeds of each category")
+    parser.add_argument("--categories", nargs="*", default=(), help="(default: all)")
     args = parser.parse_args()
     net = Network(args.model)
     library = AssetLibrary(installed_sources(installed_packs()))
-    print(f"{'category':<14} catalogue  apart  named   seeds  apart  named")
+    print(f"{'category':<14}{'catalogue':>10}{TABLE}{'seeds':>10}{TABLE}")
     totals: dict[str, list[float]] = {}
     with PreviewRenderer() as eyes:
         for category, listed, seeded in groups(args.pieces):
+            if args.categories and category not in args.categories:
+                continue
             text = f"{category:<14}"
             for kind, names in (("catalogue", listed), ("seeds", seeded)):
-                found = judged(names, category, library, net, eyes) if names else None
                 text += f"{len(names):10d}"
-                text += (
-                    "             -"
-                    if found is None
-                    else (f"  {found['apart']:5.3f}  {found['named']:5.0%}")
-                )
-                if found is not None:
-                    totals.setdefault(f"{kind} named", []).append(found["named"])
-                    if len(names) > 1:
-                        totals.setdefault(f"{kind} apart", []).append(found["apart"])
+                if not names:
+                    text += f"{'-':>{len(TABLE)}}"
+                    continue
+                apart, unlike, named = judged(names, category, library, net, eyes)
+                text += f"{apart:7.3f}{unlike:8d}{named:7.0%}"
+                totals.setdefault(f"{kind} named", []).append(named)
+                if len(names) > 1:
+                    totals.setdefault(f"{kind} apart", []).append(apart)
             print(text, flush=True)
     for key, values in sorted(totals.items()):
         print(f"mean {key}: {np.mean(values):.3f}")

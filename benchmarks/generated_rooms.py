@@ -30,7 +30,7 @@ from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.physics_check import obstructions, overlaps, shifts
 
 Row = dict[str, Any]
-"""A room: kind, seed, wall_s, cpu_s, objects, assets, attempts, taken_out, checked, faults, state."""
+"""Kind, seed, state, objects, assets, attempts, taken_out, checked, faults, wall_s, cpu_s."""
 
 
 class Judge:

@@ -90,7 +90,7 @@ class PieceChooser:
 
     @property
     def style(self) -> RoomStyle | None:
-        """What pieces are chosen to suit."""
+        """The style that pieces are chosen to suit."""
         return self._style
 
     def one_of(self, names: Sequence[str]) -> str:
