@@ -88,5 +88,5 @@ def drum(b: PieceBuilder, v: Values, front: float, depth: float, radius: float, 
                     b.between(-0.3, 0.3) * radius,
                     z - 0.66 * radius + 0.035 * number,
                 )
-                turn = tuple(b.between(-22.0, 22.0) for _ in range(3))
-                b.form(cloth, mesh, at, turn=turn, collides="none")
+                tilt = tuple(b.between(-22.0, 22.0) for _ in range(3))
+                b.form(cloth, mesh, at, turn=tilt, collides="none")

@@ -23,7 +23,7 @@ __all__ = ["WindowDresser"]
 FOOT_M, ABOVE_SILL_M, BELOW_CEILING_M = 0.012, 0.035, 0.02
 """Of what hangs, above the floor, above a sill, and of its upper end below the ceiling [m]."""
 
-LEAST_ASIDE_M = 0.05
+LEAST_ASIDE_M = 0.02
 FROM_CORNER_M = 0.012
 SCALES = (0.55, 1.75)
 """Least and greatest scale by which a piece is made to fit."""

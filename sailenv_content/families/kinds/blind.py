@@ -10,7 +10,7 @@ from sailenv_content.families.fronts import front_panel
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import FABRICS, WOODS, PieceMaterial, fabric, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
-from sailenv_content.families.shaping import ribbon, swept, turned
+from sailenv_content.families.shaping import board, ribbon, swept, turned
 
 __all__ = ["FAMILY"]
 
@@ -141,13 +141,11 @@ def _vanes(b: PieceBuilder, v: Values) -> None:
             turn = (0.0, 0.0, v.turn)
             high = h - 0.055
             cloth = v.cloth if number % 2 or not v.striped else v.second
-            b.box(
-                cloth,
-                (0.0016, wide, high - 0.012),
-                (0.055, y, high / 2 + 0.006),
-                turn=turn,
-                bevel=0.0004,
-            )
+            tall = high - 0.012
+            middle = (0.055, y, high / 2 + 0.006)
+            b.box(cloth, (0.0016, wide, tall), middle, turn=turn, bevel=0.0004, collides=False)
+            # As a hull: turned boxes that collide cannot be made to fit a window.
+            b.hull(board((0.0016, wide, tall), bevel=0.0004), middle, turn=turn)
             b.box(
                 WHITE,
                 (0.004, wide - 0.004, 0.02),
@@ -179,8 +177,8 @@ def _shutters(b: PieceBuilder, v: Values) -> None:
             half = leaf.middle[2]
             lower = Box(leaf.low, (*leaf.high[:2], half - 0.001))
             upper = Box((*leaf.low[:2], half + 0.001), leaf.high)
-            for part, kind in ((lower, v.lower), (upper, "louvre")):
-                front_panel(b, v.material, kind, part)
+            front_panel(b, v.material, v.lower, lower)
+            front_panel(b, v.material, "louvre", upper)
             side = leaf.low[1] + 0.02 if left else leaf.high[1] - 0.02
             knob = turned([(0, 0), (0.004, 0), (0.009, 0.014), (0, 0.018)], segments=14)
             b.form(v.metal, knob, (leaf.high[0], side, half), turn=(0, 90, 0), collides="none")

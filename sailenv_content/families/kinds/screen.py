@@ -72,8 +72,8 @@ def _tv(b: PieceBuilder, v: Values) -> None:
     else:
         turn = np.linspace(0.0, np.pi, 15)
         bow = np.stack([0.3 * w * np.cos(turn), -0.02 + 0.13 * np.sin(turn)], -1)
-        path = np.stack([bow[:, 1], bow[:, 0], np.full(15, 0.008)], -1)
-        b.form(v.trim, swept(path, 0.008, sides=10), collides="none")
+        bent = np.stack([bow[:, 1], bow[:, 0], np.full(15, 0.008)], -1)
+        b.form(v.trim, swept(bent, 0.008, sides=10), collides="none")
         ends = [(-0.02, -0.3 * w, 0.008), (-0.02, 0.3 * w, 0.008)]
         b.form(v.trim, swept(ends, 0.008, sides=10), collides="none")
         b.collide((0.15, 0.6 * w, 0.014), (0.05, 0.0, 0.008))
