@@ -27,7 +27,6 @@ __all__ = ["Joint", "Unfit", "Component", "PieceBuilder"]
 Vector3 = tuple[float, float, float]
 LEAST_SHIFT_M = 1e-5
 """Height above or below the floor that is left as it is [m]."""
-
 Collides = Literal["hull", "box", "none"]
 
 
@@ -156,8 +155,8 @@ class PieceBuilder:
 
     def collide_points(self, points: ArrayLike) -> None:
         """Add the hull of points (N, 3), all of them corners of it, that is not drawn."""
-        corners = [self._frame.point(point) for point in np.asarray(points, np.float64)]
-        self._at.shapes.append(ConvexShape(points=np.array(corners)))
+        corners = np.array([self._frame.point(point) for point in np.asarray(points, np.float64)])
+        self._at.shapes.append(ConvexShape(points=corners))
 
     @contextmanager
     def frame(self, at: ArrayLike = (0.0, 0.0, 0.0), yaw_deg: float = 0.0) -> Iterator[None]:
@@ -173,9 +172,9 @@ class PieceBuilder:
         """Move all so that the lowest point that is drawn is at z = 0: legs are cut off aslant."""
         drawn = [mesh.positions for one in self.components for _, mesh in one.meshes]
         low = min((float(positions[:, 2].min()) for positions in drawn), default=0.0)
-        by = np.array([0.0, 0.0, -low])
         if abs(low) < LEAST_SHIFT_M:
             return
+        by = np.array([0.0, 0.0, -low])
         for one in self.components:
             one.meshes = [(material, placed(mesh, by)) for material, mesh in one.meshes]
             one.shapes = [_shifted(shape, by) for shape in one.shapes]
@@ -262,8 +261,6 @@ class PieceBuilder:
             number += 1
             free = f"{whole} {number}"
         return free
-
-    # -- measures --------------------------------------------------------------------------
 
     def chance(self, share: float) -> bool:
         """Return whether something is so that is so with this probability."""
