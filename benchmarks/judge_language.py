@@ -1,6 +1,6 @@
 """Answers and expressions are found again in exported MJCF, by MuJoCo, and in COCO's masks.
 
-    python benchmarks/judge_language.py write FOLDER [--rooms N]
+    python benchmarks/judge_language.py write FOLDER [--rooms N] [--first K]
     python benchmarks/judge_language.py judge FOLDER
 
 `write` makes pictures of generated rooms by several cameras, before and after some things were
@@ -22,8 +22,8 @@ CAMERAS = 12
 KINDS = ("kitchen", "office", "living_room", "bedroom", "bathroom")
 
 
-def write(folder: Path, rooms: int) -> None:
-    """Write pictures, questions, masks and models of rooms."""
+def write(folder: Path, rooms: int, first_room: int) -> None:
+    """Write pictures, questions, masks and models of rooms, from a number on."""
     import dataclasses
 
     import numpy as np
@@ -36,7 +36,7 @@ def write(folder: Path, rooms: int) -> None:
     images: list[dict[str, str]] = []
     lens = CameraIntrinsics(width=640, height=480)
     with DatasetWriter(folder / "data", ["vqa", "coco"]) as writer:
-        for number in range(rooms):
+        for number in range(first_room, first_room + rooms):
             name = f"generated:{KINDS[number % len(KINDS)]}:{100 + number}"
             rng = np.random.default_rng(number)
             first = AgentSpec(name="camera_0", intrinsics=lens, following=False)
@@ -96,13 +96,14 @@ if __name__ == "__main__":
     parser.add_argument("what", choices=("write", "judge"))
     parser.add_argument("folder", type=Path)
     parser.add_argument("--rooms", type=int, default=10)
+    parser.add_argument("--first", type=int, default=0, help="number of the first room")
     parser.add_argument("--answers", type=int, default=10_500, help="so many are recomputed")
     parser.add_argument(
         "--part", type=int, nargs=2, default=(0, 1), metavar=("K", "N"), help="rooms k of n alone"
     )
     args = parser.parse_args()
     if args.what == "write":
-        write(args.folder, args.rooms)
+        write(args.folder, args.rooms, args.first)
     else:
         sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
         from benchmarks.recomputed_answers import judge

@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--light",
         choices=("lamps", "baked"),
         default="lamps",
-        help="baked: .glb with a light map instead of lights",
+        help="baked: .glb, .usda and .usdz with a light map",
     )
     parser.add_argument(
         "--motion", type=Path, metavar="BAG", help="write the motion of a recording of the scene"

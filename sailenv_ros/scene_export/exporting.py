@@ -18,7 +18,7 @@ from sailenv_ros.scene_export.gathering import (
     exported_world,
     with_motion,
 )
-from sailenv_ros.scene_export.losses import motion_losses
+from sailenv_ros.scene_export.losses import RICH, motion_losses
 from sailenv_ros.scene_export.motion import Moment, motion_of
 from sailenv_ros.scene_export.saving import require_free, save
 from sailenv_ros.simulation import Simulation
@@ -93,8 +93,8 @@ def export_scene(
     frames : sequence of Frame
         Motion that was captured or recorded of the scene, instead: a sample for each frame.
     light : {'lamps', 'baked'}
-        ``baked``, of ``.glb`` alone: a light map with shadows and bounced light instead of lights.
-        A room whose light is not baked yet is baked first.
+        ``baked``, of ``.glb`` and USD: a light map with shadows and bounced light; USD keeps the
+        lights for what has none. A room whose light is not baked yet is baked first.
     overwrite : bool
         True replaces both.
     allow_modules : bool
@@ -118,8 +118,8 @@ def export_scene(
         raise InvalidRequest("duration_s", duration_s, "0 where frames tell the motion")
     if light not in get_args(_Light):
         raise InvalidRequest("light", light, f"one of: {', '.join(get_args(_Light))}")
-    if light == "baked" and path.suffix.lower() != ".glb":
-        raise InvalidRequest("light", light, "lamps, as .glb alone holds light maps")
+    if light == "baked" and path.suffix.lower() not in RICH:
+        raise InvalidRequest("light", light, f"lamps, as {', '.join(RICH)} alone hold light maps")
     if isinstance(scene, Simulation):
         if steps or duration:
             what, value = ("at_s", at_s) if steps else ("duration_s", duration_s)

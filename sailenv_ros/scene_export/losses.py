@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from sailenv_ros.scene_export.contents import ExportedScene
 
-__all__ = ["camera_losses", "counted", "light_losses", "motion_losses", "physics_losses"]
+__all__ = ["RICH", "camera_losses", "counted", "light_losses", "motion_losses", "physics_losses"]
 
-MOVING = (".glb", ".usda", ".usdz")
-"""Formats that hold motion."""
+RICH = (".glb", ".usda", ".usdz")
+"""Formats that hold motion and baked light."""
 
 
 def counted(count: int, noun: str) -> str:
@@ -61,7 +61,7 @@ def motion_losses(scene: ExportedScene, suffix: str) -> Iterator[str]:
     motion = scene.motion
     if motion is None:
         return
-    if suffix not in MOVING:
+    if suffix not in RICH:
         yield f"{suffix} has no motion; the first moment was written"
         return
     stiff = sum(

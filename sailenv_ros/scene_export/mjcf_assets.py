@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from xml.etree.ElementTree import Element, SubElement
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,7 +12,7 @@ from sailenv_ros.scene_export.contents import Vector3
 from sailenv_ros.scene_export.losses import counted
 from sailenv_ros.scene_export.mesh_files import MeshFiles
 from sailenv_ros.scene_export.names import FreeNames
-from sailenv_ros.scene_export.textures import Textures
+from sailenv_ros.scene_export.textures import Textures, halved
 from sailenv_ros.scene_export.xml_text import numbers
 from sailenv_ros.types.colour import srgb_from_linear
 from sailenv_ros.types.model import Material, ModelPart, Texture
@@ -106,7 +105,7 @@ class MjcfAssets:
         assert texture is not None
         smaller = self._smaller.get(id(texture))
         if smaller is None and max(texture.shape[:2]) > LONGEST_SIDE_PX:
-            smaller = self._smaller.setdefault(id(texture), _halved(texture))
+            smaller = self._smaller.setdefault(id(texture), _fitted(texture))
         seen = material.alpha != "opaque"
         picture = self._textures.of(texture if smaller is None else smaller, alpha=seen)
         if picture.name not in self._texture_names:
@@ -116,11 +115,8 @@ class MjcfAssets:
         return picture.name
 
 
-def _halved(texture: Texture) -> Texture:
+def _fitted(texture: Texture) -> Texture:
     """Return a texture halved until no side is longer than is wanted."""
-    result: NDArray[np.uint8] = np.asarray(texture)
-    while max(result.shape[:2]) > LONGEST_SIDE_PX:
-        height, width = (max(side // 2, 1) for side in result.shape[:2])
-        made = cv2.resize(result, (width, height), interpolation=cv2.INTER_AREA)
-        result = np.asarray(made, np.uint8)
-    return result
+    while max(texture.shape[:2]) > LONGEST_SIDE_PX:
+        texture = halved(texture)
+    return texture

@@ -6,13 +6,14 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from sailenv_ros.assets.glb import JPEG_QUALITY
 from sailenv_ros.frame.pictures.codecs import encode_jpeg, encode_png
 from sailenv_ros.types.model import Material, Texture
 
-__all__ = ["SLOTS", "Picture", "Textures", "texture_slots"]
+__all__ = ["SLOTS", "Picture", "Textures", "halved", "texture_slots"]
 
 SLOTS = ("base_colour", "metallic_roughness", "normal")
 """Maps of a material, as its fields begin."""
@@ -83,6 +84,13 @@ def texture_slots(material: Material) -> Iterator[tuple[str, Texture, bool]]:
         texture: Texture | None = getattr(material, f"{slot}_texture")
         if texture is not None:
             yield slot, texture, seen and slot == "base_colour"
+
+
+def halved(texture: Texture) -> Texture:
+    """Return a texture of half the width and height, at least 1."""
+    height, width = (max(side // 2, 1) for side in texture.shape[:2])
+    made = cv2.resize(texture, (width, height), interpolation=cv2.INTER_AREA)
+    return np.asarray(made, np.uint8)
 
 
 def _stored(texture: Texture, *, lossless: bool, alpha: bool) -> bytes:

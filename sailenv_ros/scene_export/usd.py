@@ -13,6 +13,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from sailenv_ros.scene_export.contents import ExportedBody, ExportedPiece, ExportedScene, Written
+from sailenv_ros.scene_export.lit_picture import lit_picture
 from sailenv_ros.scene_export.losses import camera_losses, counted
 from sailenv_ros.scene_export.names import FreeNames, identifier
 from sailenv_ros.scene_export.optics import looking_back
@@ -62,6 +63,8 @@ def write_usdz(scene: ExportedScene, folder: str) -> Written:
 
 def _losses(scene: ExportedScene) -> Iterator[str]:
     yield from camera_losses(scene, "USD", shifts=True)
+    if scene.light_map is not None:
+        yield "colours of what is in the light map are as fine as its picture in USD"
     environment = scene.environment
     if environment is not None:
         yield "the sky is a dome of one colour in USD"
@@ -83,7 +86,9 @@ class _UsdWriter:
         self._is_piece = scene.environment is None
         self._paths: dict[str, str] = {}
         surfaces = {(body.friction, body.restitution) for body in scene.bodies if body.shapes}
-        self._materials = UsdMaterials(text, f"/{self._root}/Looks", folder)
+        light = scene.light_map
+        lit = (None, 0.0) if light is None else (lit_picture(scene), light.white)
+        self._materials = UsdMaterials(text, f"/{self._root}/Looks", folder, *lit)
         kind = "component" if self._is_piece else "assembly"
         metadata = {
             "assetInfo": f"{{ string identifier = {quoted(scene.name)}; string version = "
@@ -91,7 +96,8 @@ class _UsdWriter:
             "kind": quoted(kind),
         }
         with text.prim("Xform", self._root, metadata=metadata):
-            self._materials.write(scene.parts, sorted(surfaces))
+            pieces = [piece for body in scene.bodies for piece in body.pieces]
+            self._materials.write(pieces, sorted(surfaces))
             self._geometry = UsdGeometry(text, scene, self._materials, f"/{self._root}/Classes")
             self._geometry.write_classes()
             with text.prim("PhysicsScene", "PhysicsScene"):

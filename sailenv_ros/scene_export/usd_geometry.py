@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sailenv_ros.scene_export.contents import ExportedPiece, ExportedScene, Vector3
 from sailenv_ros.scene_export.names import FreeNames
 from sailenv_ros.scene_export.textures import texture_slots
-from sailenv_ros.scene_export.usd_materials import UsdMaterials
+from sailenv_ros.scene_export.usd_materials import UsdMaterials, is_lit
 from sailenv_ros.scene_export.usd_text import UsdText, array, quoted, vector, vectors
 from sailenv_ros.types.deformation import MovedMesh
 from sailenv_ros.types.geometry import Pose
@@ -45,6 +45,7 @@ class UsdGeometry:
         self._path = path
         self._classes: dict[Key, str] = {}
         pieces = [piece for body in scene.bodies for piece in body.pieces if piece.parts]
+        pieces = [piece for piece in pieces if not piece.light_places]  # each has its own
         motion = scene.motion
         self._moved = {} if motion is None else motion.meshes
         self._codes = [] if motion is None else motion.codes
@@ -65,12 +66,12 @@ class UsdGeometry:
                 name = names.take(f"class {piece.instance.asset}")
                 self._classes[key] = f"{self._path}/{name}"
                 with self._text.prim("Xform", name, specifier="class"):
-                    self._write_parts(piece.parts)
+                    self._write_parts(piece)
 
     def write_piece(self, piece: ExportedPiece, scale: Vector3, name: str) -> None:
         """Write what is drawn of a piece, in the body's frame."""
         text, metadata = self._text, {}
-        found = self._classes.get(_key(piece.parts))
+        found = None if piece.light_places else self._classes.get(_key(piece.parts))
         if found is not None:
             metadata = {"inherits": f"<{found}>", "instanceable": "true"}
         with text.prim("Xform", name, metadata=metadata):
@@ -78,13 +79,13 @@ class UsdGeometry:
                 text.attribute("float3", "xformOp:scale", vector(scale))
                 text.attribute("uniform token[]", "xformOpOrder", '["xformOp:scale"]')
             if found is None:
-                self._write_parts(piece.parts, self._moved.get(piece.instance.id, ()))
+                self._write_parts(piece, self._moved.get(piece.instance.id, ()))
 
     def _write_parts(
-        self, parts: Sequence[ModelPart], samples: Sequence[Sequence[MovedMesh]] = ()
+        self, piece: ExportedPiece, samples: Sequence[Sequence[MovedMesh]] = ()
     ) -> None:
         text, names = self._text, FreeNames()
-        for place, part in enumerate(parts):
+        for place, part in enumerate(piece.parts):
             name = names.take(part.names[0] if part.names else "mesh")
             mesh = part.mesh
             with text.prim("Mesh", name, schemas=["MaterialBindingAPI"]):
@@ -105,7 +106,12 @@ class UsdGeometry:
                 if any(texture_slots(part.material)):
                     uvs = vectors(mesh.uvs[used], 7)
                     text.attribute("texCoord2f[]", "primvars:st", uvs, of="vertex")
-                text.relate("material:binding", self._materials.path(part.material))
+                lit = is_lit(piece, part.material)
+                if lit:
+                    across, down = piece.light_places[place][used].T
+                    uvs = vectors(np.stack([across, 1.0 - down], axis=-1), 7)
+                    text.attribute("texCoord2f[]", "primvars:st1", uvs, of="vertex")
+                text.relate("material:binding", self._materials.path(part.material, lit=lit))
 
     def _write_samples(self, kind: str, name: str, arrays: Sequence[NDArray[Any]]) -> None:
         values = (vectors(array, 6) for array in arrays)

@@ -48,7 +48,6 @@ def write_light(text: UsdText, light: Light, name: str) -> None:
         else:
             intensity /= math.pi * LAMP_RADIUS_M**2
             text.attribute("float", "inputs:radius", number(LAMP_RADIUS_M))
-            text.attribute("bool", "treatAsPoint", "1")
             ball = (vector([-LAMP_RADIUS_M] * 3), vector([LAMP_RADIUS_M] * 3))
             text.attribute("float3[]", "extent", f"[{', '.join(ball)}]")
         if light.type == "spot":
