@@ -57,6 +57,9 @@ def _add_lockstep(group: Any) -> None:
     group.add_argument("--frames", type=int, metavar="N", help="frames of each agent")
     group.add_argument("--scene", help="name or file (default: what the simulator starts with)")
     group.add_argument("--seed", type=int, default=0)
+    group.add_argument(
+        "--facts", action="store_true", help="keep what questions need: contacts, materials, …"
+    )
     group.add_argument("--width", type=int, default=640, help="of an agent made here [px]")
     group.add_argument("--height", type=int, default=480, help="of an agent made here [px]")
     group.add_argument("--rate", type=float, default=30.0, help="of an agent made here [Hz]")
@@ -118,6 +121,7 @@ def _lockstep(args: argparse.Namespace, output: Path, options: RecordingOptions)
                 agents=args.agents,
                 views=args.views,
                 amodal=args.amodal,
+                facts=args.facts,
                 namespace=args.namespace,
                 on_frame=progress.frame_done,
             )

@@ -14,7 +14,7 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import Image
-from std_msgs.msg import Header
+from std_msgs.msg import Header, String
 
 from sailenv_msgs_py.camera_info import camera_info_of_frame
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, frame_info_to_msg, header_of_frame
@@ -24,6 +24,8 @@ from sailenv_msgs_py.scene_msgs import scene_info_to_msg
 from sailenv_msgs_py.transforms import pose_stamped_to_msg
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.language.facts_text import facts_of_text, text_of_facts
+from sailenv_ros.frame.language.scene_facts import SceneFacts
 from sailenv_ros.recording.cdr_padding import without_padding_garbage
 from sailenv_ros.recording.mcap.chunks import Buffer
 from sailenv_ros.recording.schemas import message_class, schema_text, type_hash
@@ -34,6 +36,8 @@ from sailenv_ros.types.views import VIEWS
 __all__ = [
     "AGENT_TOPICS",
     "CLOCK",
+    "FACTS",
+    "FACTS_NAME",
     "FRAME_INFO",
     "IMAGE",
     "OBJECTS",
@@ -41,6 +45,8 @@ __all__ = [
     "SCENE_INFO",
     "agent_topics",
     "clock_message",
+    "facts_message",
+    "facts_of_message",
     "frame_messages",
     "is_present_form",
     "message_of",
@@ -55,6 +61,10 @@ FRAME_INFO = "sailenv_msgs/msg/FrameInfo"
 SCENE_INFO = "sailenv_msgs/msg/SceneInfo"
 OBJECTS = "sailenv_msgs/msg/Objects"
 CLOCK = "rosgraph_msgs/msg/Clock"
+FACTS = "std_msgs/msg/String"
+
+FACTS_NAME = "facts"
+"""Topic, below an agent's, of what is known of the scene at the instant of its next frame."""
 
 AGENT_TOPICS = {
     **dict.fromkeys(VIEWS, IMAGE),
@@ -146,6 +156,16 @@ def frame_messages(
 def scene_info_message(info: SceneInfo) -> Parts:
     """Return the message that tells of the scene."""
     return (_serialized(scene_info_to_msg(info)),)
+
+
+def facts_message(facts: SceneFacts) -> Parts:
+    """Return the message that tells of facts: a line of JSON."""
+    return (_serialized(String(data=text_of_facts(facts))),)
+
+
+def facts_of_message(message: Any) -> SceneFacts:
+    """Read the facts that a message tells of."""
+    return facts_of_text(message.data)
 
 
 def _serialized(message: Any) -> bytes:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -32,11 +32,14 @@ from sailenv_ros.frame.data import DrawAmodal
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.recording.channels import (
+    FACTS,
+    FACTS_NAME,
     FRAME_INFO,
     IMAGE,
     OBJECTS,
     ON_REQUEST,
     SCENE_INFO,
+    facts_of_message,
     is_present_form,
     message_of,
     present_form,
@@ -116,6 +119,7 @@ class _FrameEntry:
     stamp_ns: int
     info: Any
     images: Mapping[str, int]
+    facts: int | None
 
 
 class RecordedFrames(Sequence[Frame]):
@@ -212,7 +216,9 @@ class RecordedFrames(Sequence[Frame]):
         scene_info = self.scene_info(index)
         views = {view: view_from_image(view, image) for view, image in images.items()}
         intrinsics = self._intrinsics(info, scene_info)
-        return frame_of_info(info, views, intrinsics, scene_info, self._amodal_reader(index))
+        frame = frame_of_info(info, views, intrinsics, scene_info, self._amodal_reader(index))
+        row = self._entries[self.position(index)].facts
+        return frame if row is None else replace(frame, facts=facts_of_message(self._message(row)))
 
     def __iter__(self) -> Iterator[Frame]:
         return (self[number] for number in range(len(self)))
@@ -299,21 +305,27 @@ class RecordedFrames(Sequence[Frame]):
         ]
 
     def _find_frames(self) -> None:
-        rows = {view: self._reader.rows(f"{self._prefix}/{view}") for view in self.views}
-        times = {view: self._reader.log_ns(found) for view, found in rows.items()}
-        after = dict.fromkeys(self.views, 0)
+        kept = self.views
+        if getattr(self._topics.get(f"{self._prefix}/{FACTS_NAME}"), "type", "") == FACTS:
+            kept = (*kept, FACTS_NAME)
+        rows = {name: self._reader.rows(f"{self._prefix}/{name}") for name in kept}
+        times = {name: self._reader.log_ns(found) for name, found in rows.items()}
+        after = dict.fromkeys(kept, 0)
         for row in self._reader.rows(f"{self._prefix}/frame_info"):
             info, log_ns = self._message(int(row)), int(self._reader.log_ns(int(row)))
             images = {}
-            for view in self.views:
-                until = int(np.searchsorted(times[view], log_ns, side="right"))
-                if view in info.views and until > after[view]:
-                    images[view] = int(rows[view][until - 1])
-                after[view] = until
+            for name in kept:
+                until = int(np.searchsorted(times[name], log_ns, side="right"))
+                if name in (*info.views, FACTS_NAME) and until > after[name]:
+                    images[name] = int(rows[name][until - 1])
+                after[name] = until
+            facts = images.pop(FACTS_NAME, None)
             if set(images) == set(info.views) & set(self.views) and images:
                 stamp_ns = ns_from_stamp(info.header.stamp)
                 self._entries.append(
-                    _FrameEntry(log_ns=log_ns, stamp_ns=stamp_ns, info=info, images=images)
+                    _FrameEntry(
+                        log_ns=log_ns, stamp_ns=stamp_ns, info=info, images=images, facts=facts
+                    )
                 )
             else:
                 self.incomplete += 1

@@ -6,6 +6,7 @@ The same scene, seed and options give the same bytes, if the simulation was made
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -13,11 +14,15 @@ from typing import Any, Protocol
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.language.scene_facts import SceneFacts
 from sailenv_ros.frame.motion import FORWARD_VIEWS, with_forward_motion
 from sailenv_ros.recording.channels import (
+    FACTS,
+    FACTS_NAME,
     ON_REQUEST,
     SCENE_INFO,
     agent_topics,
+    facts_message,
     frame_messages,
     scene_info_message,
     topic,
@@ -25,6 +30,7 @@ from sailenv_ros.recording.channels import (
 from sailenv_ros.recording.topics import RecordedTopic
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.scene_facts import scene_facts
 from sailenv_ros.system.futures import wait_for
 from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.listed_views import Views
@@ -95,12 +101,27 @@ class FrameRecorder:
         log_ns = self._log_ns(info.epoch, info.sim_time_ns)
         self._writer.write(name, scene_info_message(info), log_ns)
 
-    def write_frame(self, frame: Frame, depth_range_m: float, *, amodal: bool = False) -> None:
-        """Record a frame; its views are those that it has. With `amodal` its amodal masks too."""
+    def write_frame(
+        self,
+        frame: Frame,
+        depth_range_m: float,
+        *,
+        amodal: bool = False,
+        facts: SceneFacts | None = None,
+    ) -> None:
+        """Record a frame; its views are those that it has.
+
+        With `amodal` its amodal masks too; and `facts`, its own if it has some.
+        """
         kept = (*frame.views, *(ON_REQUEST if amodal else ()))
         for entry in agent_topics(self._namespace, frame.agent, kept):
             self._add(entry)
         log_ns = self._log_ns(frame.epoch, frame.stamp_ns)
+        known = facts or frame.facts
+        if known is not None:
+            name = f"{self._namespace}/{frame.agent}/{FACTS_NAME}"
+            self._add(topic(name, FACTS))
+            self._writer.write(name, facts_message(known), log_ns)
         for name, parts in frame_messages(frame, depth_range_m, amodal=amodal):
             self._writer.write(f"{self._namespace}/{frame.agent}/{name}", parts, log_ns)
 
@@ -160,6 +181,7 @@ def record_lockstep(
     agents: Sequence[str] = (),
     views: Views = (),
     amodal: bool = False,
+    facts: bool = False,
     namespace: str = "/sailenv",
     on_frame: Callable[[int], None] = lambda count: None,
 ) -> int:
@@ -179,6 +201,8 @@ def record_lockstep(
         the last frame of each agent has none (nan).
     amodal : bool
         True records amodal masks too.
+    facts : bool
+        True records what `scene_facts` knows at each frame, which takes up to some seconds.
     namespace : str
         What the topics' names begin with.
     on_frame : callable
@@ -213,12 +237,14 @@ def record_lockstep(
     count = 0
     try:
         late = tuple(view for view in wanted or () if view in FORWARD_VIEWS)
-        made = rendered_ahead(_asked(simulation, shots, _views_to_render(wanted)))
+        known: deque[SceneFacts] | None = deque() if facts else None
+        made = rendered_ahead(_asked(simulation, shots, _views_to_render(wanted), known))
         for frame in with_forward_motion(made, late) if late else made:
             # The next frame is being made: what is told for it must not come before this one.
             while infos and infos[0].revision <= frame.revision:
                 recorder.write_info(infos.pop(0))
-            recorder.write_frame(frame, ranges[frame.agent], amodal=amodal)
+            told = known.popleft() if known is not None else None
+            recorder.write_frame(frame, ranges[frame.agent], amodal=amodal, facts=told)
             count += 1
             on_frame(count)
     finally:
@@ -249,11 +275,19 @@ def _views_to_render(views: tuple[str, ...] | None) -> tuple[str, ...] | None:
 
 
 def _asked(
-    simulation: Simulation, shots: Sequence[_Shot], views: tuple[str, ...] | None
+    simulation: Simulation,
+    shots: Sequence[_Shot],
+    views: tuple[str, ...] | None,
+    known: deque[SceneFacts] | None,
 ) -> Iterator[Future[Frame]]:
-    step = 0
+    """Ask for frames; what is known at the instant of each is added to `known`."""
+    step, told = 0, None
     for shot in shots:
         if shot.step > step:
             simulation.step.submit(shot.step - step)
-            step = shot.step
-        yield simulation.capture.submit(views, agent=shot.spec.name)
+            step, told = shot.step, None
+        asked = simulation.capture.submit(views, agent=shot.spec.name)
+        if known is not None:
+            told = told or simulation.read(scene_facts, timeout_s=FRAME_TIMEOUT_S)
+            known.append(told)
+        yield asked

@@ -106,7 +106,9 @@ class _Surface:
         texture = material.base_colour_texture
         if texture is not None:
             around = np.array(texture.shape[1::-1], np.float64)
-            shares = np.abs(_doubled_area(uvs * around)) / np.maximum(_doubled_area(corners), 1e-9)
+            shares = np.abs(_doubled_area(uvs * around)) / np.maximum(
+                np.abs(_doubled_area(corners)), 1e-9
+            )
             while np.median(shares) >= 4.0 and min(texture.shape[:2]) > 1:
                 texture, shares = halved(texture), shares / 4.0
             texels = LINEAR_OF_SRGB8[texture[..., :3]].astype(np.float32)

@@ -119,11 +119,11 @@ class UsdMaterials:
     def _write_colour(self, material: Material, path: str, maps: Maps) -> None:
         """Write what of light is sent back, and what is emitted."""
         text = self._text
-        textured = "base_colour" in maps
-        if textured:
+        textured, colour = "base_colour" in maps, material.base_colour[:3]
+        if textured and any(colour):
             text.connect("color3f", "inputs:diffuseColor", f"{path}/base_colour.outputs:rgb")
         else:
-            text.attribute("color3f", "inputs:diffuseColor", vector(material.base_colour[:3]))
+            text.attribute("color3f", "inputs:diffuseColor", vector(colour))
         if any(material.emission) and textured:
             text.connect("color3f", "inputs:emissiveColor", f"{path}/emission.outputs:rgb")
         elif any(material.emission):

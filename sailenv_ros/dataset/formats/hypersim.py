@@ -84,11 +84,18 @@ class HypersimExport(ScanExport):
         for name, text in tables.items():
             write_bytes(detail / f"{name}.csv", text.encode())
         projection = lens.clip_from_optical() @ np.diag([1.0, -1.0, -1.0, 1.0])
-        head = [f"M_proj_{row}{column}" for row in range(4) for column in range(4)]
-        told = [repr(float(value)) for value in projection.reshape(-1)]
-        columns = ["scene_name", "settings_output_img_width", "settings_output_img_height", *head]
-        line = ["scene", str(lens.width), str(lens.height), *told]
-        table = f"{','.join(columns)}\n{','.join(line)}\n"
+        # Rays of the camera by places in the picture, -1 to 1.
+        rays = np.linalg.inv(projection[[0, 1, 3], :3])
+        told: dict[str, Any] = {
+            "scene_name": "scene",
+            "settings_output_img_width": lens.width,
+            "settings_output_img_height": lens.height,
+            "settings_units_info_meters_scale": 1.0,
+        }
+        for name, matrix in (("M_proj", projection), ("M_cam_from_uv", rays)):
+            for (row, column), value in np.ndenumerate(matrix):
+                told[f"{name}_{row}{column}"] = float(value)
+        table = f"{','.join(told)}\n{','.join(map(str, told.values()))}\n"
         write_bytes(detail / "metadata_camera_parameters.csv", table.encode())
 
 

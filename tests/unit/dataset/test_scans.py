@@ -131,6 +131,11 @@ def test_hypersim_s_distances_and_poses(written: Path, taken: list[Frame]) -> No
     turns = hdf5(detail / "camera_keyframe_orientations.hdf5")
     pose = frame.camera.world_from_camera
     np.testing.assert_array_equal(turns[1], pose[:3, :3] * (1.0, -1.0, -1.0))
+    table = (detail.parent / "metadata_camera_parameters.csv").read_text().splitlines()
+    told = dict(zip(*(line.split(",") for line in table), strict=True))
+    rays = np.array([float(told[f"M_cam_from_uv_{row}{k}"]) for row in range(3) for k in range(3)])
+    ray = turns[1] @ rays.reshape(3, 3) @ (2.0 * 30.5 / 64 - 1.0, 1.0 - 2.0 * 40.5 / 48, 1.0)
+    np.testing.assert_allclose(ray * frame["depth"][40, 30] + eye, at, rtol=1e-6)
 
 
 def test_instant_ngp_s_cube_and_depth(written: Path, taken: list[Frame]) -> None:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from mcap.reader import make_reader
 
 from sailenv_ros.cli import scene_bake
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.frame.language.facts_text import facts_of_text
 from sailenv_ros.recording.channels import AGENT_TOPICS, IMAGE, SCENE_INFO, message_of
 from sailenv_ros.recording.frames import RecordedFrames, recorded_agents
 from sailenv_ros.recording.lockstep import record_lockstep
@@ -17,6 +19,7 @@ from sailenv_ros.recording.progress import progress_line, size_in_bytes
 from sailenv_ros.recording.reader import RecordingReader
 from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation.scene_facts import scene_facts
 from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
@@ -55,6 +58,32 @@ def test_every_frame_is_recorded_exactly_once(tmp_path: Path) -> None:
         stamps = [info.header.stamp for info in read]  # type: ignore[attr-defined]
         expected = [step * 1_000_000_000 // 240 for step in due_steps(rate, 9)]
         assert [stamp.sec * 1_000_000_000 + stamp.nanosec for stamp in stamps] == expected
+
+
+def test_facts_of_the_scene_come_back(tmp_path: Path) -> None:
+    """What two agents see at the same instant has the same facts, which change as things move."""
+    with simulation() as running, RecordingWriter(tmp_path / "bag") as writer:
+        begun = running.read(scene_facts)
+        record_lockstep(running, writer, frames=3, facts=True)
+        ended = running.read(scene_facts)
+    with RecordingReader(tmp_path / "bag") as reader:
+        fast, slow = (list(RecordedFrames(reader, name)) for name in ("fast", "slow"))
+    told = [frame.facts for frame in (*fast, *slow)]
+    assert [facts.sim_time_ns for facts in told if facts] == [
+        frame.stamp_ns for frame in (*fast, *slow)
+    ]
+    for facts, meant in ((fast[0].facts, begun), (slow[0].facts, begun), (slow[2].facts, ended)):
+        assert facts is not None
+        assert facts.gaps == meant.gaps
+        assert facts.enclosed == meant.enclosed
+        assert facts.openings == meant.openings
+        assert facts.materials == meant.materials
+        for space, other in zip(facts.spaces, meant.spaces, strict=True):
+            np.testing.assert_array_equal(space.cells, other.cells)
+            assert (space.body, space.origin_m) == (other.body, other.origin_m)
+    assert begun.materials
+    with pytest.raises(InvalidRequest, match="fields of SceneFacts"):
+        facts_of_text("[]")
 
 
 def test_the_same_call_gives_the_same_messages(tmp_path: Path) -> None:
