@@ -4,12 +4,15 @@
     python3.11 -m venv judges/mujoco && judges/mujoco/bin/pip install mujoco
     apt install libosmesa6
     python -m benchmarks.foreign_pictures write FOLDER --judges judges
+    python -m benchmarks.foreign_pictures views FOLDER
+    opensplat FOLDER/views -n 3000 --val --val-image 000000.png --val-render FOLDER/seen
     python -m benchmarks.foreign_pictures sheet FOLDER -o docs/images/export.jpg [--splats PICTURE]
 
 `write` exports `room_01` as MJCF and as USD with lamps and with baked light, and has Cycles trace
 the former, show the latter, and MuJoCo draw. Radiance is developed as ours is, at the exposure at
-which it is most like our picture; that and the PSNR are printed. `--splats` is a picture of
-Gaussians from the same camera.
+which it is most like our picture; that and the PSNR are printed. `views` exports pictures for
+https://github.com/pierotofy/OpenSplat, which trains Gaussians on processors too; the first one is
+ours, is held back, and what it draws there is `--splats`.
 """
 
 from __future__ import annotations
@@ -25,9 +28,11 @@ from PIL import Image, ImageDraw, ImageFont
 
 from benchmarks.reference.curve import matched_stops, picture_of
 from sailenv_ros import AgentSpec, CameraIntrinsics, Simulation, export_scene, look_at
+from sailenv_ros.dataset.formats import DatasetWriter
 
 SIZE = (480, 360)
 EYE, TARGET = (2.1, -1.25, 1.55), (-1.2, 0.95, 0.85)
+VIEWS = 90
 LENS = CameraIntrinsics(width=SIZE[0], height=SIZE[1], vertical_fov_deg=62.0)
 TILES = {
     "ours": "sailenv_ros",
@@ -44,7 +49,7 @@ def write(folder: Path, judges: Path) -> None:
     spec = AgentSpec(name="eye", intrinsics=LENS, following=False)
     with Simulation("room_01", mode="lockstep", light="baked", agent=spec) as simulation:
         simulation.set_pose(look_at(EYE, TARGET))
-        np.save(folder / "ours.npy", simulation.capture()["rgb"])
+        np.save(folder / "ours.npy", simulation.capture.within(300.0)()["rgb"])
         export_scene(simulation, folder / "lit.usda", light="baked", overwrite=True)
         for name in ("lamps.usda", "room.xml"):
             export_scene(simulation, folder / name, overwrite=True)
@@ -61,6 +66,27 @@ def write(folder: Path, judges: Path) -> None:
     command = [judges / "mujoco/bin/python", script, folder / "room.xml", "eye", *size]
     plain = {**os.environ, "MUJOCO_GL": "osmesa", "PYTHONPATH": ""}
     subprocess.run([*command, folder / "mujoco.npy"], env=plain, check=True)
+
+
+def views(folder: Path) -> None:
+    """Export pictures from all around, and the points that they see."""
+    lens = CameraIntrinsics(width=320, height=240, vertical_fov_deg=62.0)
+    kept = ("rgb", "depth", "instance", "range")
+    spec = AgentSpec(name="eye", intrinsics=lens, views=kept, following=False)
+    turns = np.linspace(0.0, 2.0 * np.pi, VIEWS, endpoint=False)
+    with (
+        Simulation("room_01", mode="lockstep", light="baked", agent=spec) as simulation,
+        DatasetWriter(folder / "views", ["nerfstudio"]) as writer,
+    ):
+        for number in range(-1, VIEWS):
+            c, s = float(np.cos(turns[number])), float(np.sin(turns[number]))
+            height = (1.1, 1.55, 1.9)[number % 3]
+            eye = (1.9 * c, 1.3 * s, height)
+            pose = look_at(EYE, TARGET) if number < 0 else look_at(eye, (-0.9 * c, -0.9 * s, 0.8))
+            simulation.set_pose(pose)
+            simulation.step(1)
+            writer.add(simulation.capture.within(300.0)())
+        writer.finish()
 
 
 def sheet(folder: Path, output: Path, splats: Path | None) -> None:
@@ -93,7 +119,7 @@ def sheet(folder: Path, output: Path, splats: Path | None) -> None:
 def main() -> None:
     """Read the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("what", choices=("write", "sheet"))
+    parser.add_argument("what", choices=("write", "views", "sheet"))
     parser.add_argument("folder", type=Path)
     parser.add_argument("--judges", type=Path, default=Path("judges"), help="see above")
     parser.add_argument("-o", "--output", type=Path, default=Path("docs/images/export.jpg"))
@@ -101,6 +127,8 @@ def main() -> None:
     args = parser.parse_args()
     if args.what == "write":
         write(args.folder, args.judges.absolute())
+    elif args.what == "views":
+        views(args.folder)
     else:
         sheet(args.folder, args.output, args.splats)
 

@@ -315,15 +315,18 @@ def main() -> None:
     parser.add_argument("names", nargs="+", metavar="NAME")
     parser.add_argument("--judges", type=Path, default=Path("judges"), help="see above")
     parser.add_argument("--formats", nargs="+", default=list(JUDGES), choices=list(JUDGES))
+    parser.add_argument("--without", nargs="+", default=[], help="judges: blender, usd, …")
     parser.add_argument("--keep", type=Path, help="folder for the files")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         folder = args.keep or Path(temporary)
         for name in args.names:
-            _judge(name, folder, args.judges.absolute(), args.formats)
+            _judge(name, folder, args.judges.absolute(), args.formats, args.without)
 
 
-def _judge(name: str, folder: Path, judges: Path, formats: Sequence[str]) -> None:
+def _judge(
+    name: str, folder: Path, judges: Path, formats: Sequence[str], without: Sequence[str]
+) -> None:
     library = SceneLibrary(baked_light=False)
     if "~" in name:
 
@@ -345,7 +348,8 @@ def _judge(name: str, folder: Path, judges: Path, formats: Sequence[str]) -> Non
         print(f"{name} {suffix}: {report.instances} instances, {took:.1f} s, {size_mb:.1f} MB")
         one = Judged(name=name, file=file, judges=judges, scene=scene, build=build)
         for judge in JUDGES[suffix]:
-            print(f"  {judge(one)}", flush=True)
+            if judge.__name__.removeprefix("judge_") not in without:
+                print(f"  {judge(one)}", flush=True)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,9 @@ import json
 import sys
 from pathlib import Path
 
+LONG_S = 600.0
+"""Time limit of one step, for busy machines [s]."""
+
 CAMERAS = 12
 KINDS = ("kitchen", "office", "living_room", "bedroom", "bathroom")
 
@@ -41,7 +44,7 @@ def write(folder: Path, rooms: int, first_room: int) -> None:
             rng = np.random.default_rng(number)
             first = AgentSpec(name="camera_0", intrinsics=lens, following=False)
             with Simulation(name, mode="lockstep", light="plain", agent=first) as simulation:
-                views = simulation.sample_cameras(
+                views = simulation.sample_cameras.within(LONG_S)(
                     "room_view", CAMERAS, agent="camera_0", seed=number
                 )
                 for place, view in enumerate(views):
@@ -56,10 +59,12 @@ def write(folder: Path, rooms: int, first_room: int) -> None:
                     simulation.step(1)
                     file = f"{number}_{instant}.xml"
                     export_scene(simulation, folder / file)
-                    facts = simulation.read(scene_facts)
+                    facts = simulation.read(scene_facts, timeout_s=LONG_S)
                     for place in range(len(views)):
                         agent = f"camera_{place}"
-                        frame = simulation.capture(("rgb", "instance", "albedo"), agent=agent)
+                        frame = simulation.capture.within(LONG_S)(
+                            ("rgb", "instance", "albedo"), agent=agent
+                        )
                         _ = frame.amodal  # drawn now, as the simulation ends before it is written
                         told = dataclasses.replace(
                             frame, facts=facts, draw_amodal=frame.amodal_source

@@ -29,9 +29,9 @@ FORMATS = ["3dgs", "nerfstudio", "instant-ngp", "scannet", "replica", "hypersim"
 STEP = 7
 """Every so many columns and rows a pixel is judged."""
 
+FARTHEST_M = 9.9
+
 Floats = NDArray[np.float64]
-Seen = tuple[Floats, Floats, Floats]
-"""Of one picture: places in the world, origins and directions of the reader's rays, (N, 3) each."""
 
 
 def write(folder: Path) -> None:
@@ -67,7 +67,9 @@ class Truth:
             self.poses, self.depths, self.matrix = kept["poses"], kept["depths"], kept["matrix"]
         self.height, self.width = self.depths.shape[1:]
         rows, columns = np.mgrid[3 : self.height : STEP, 3 : self.width : STEP]
-        self.rows, self.columns = rows.reshape(-1), columns.reshape(-1)
+        # Windows show what has no place; Replica's depth ends at 10 m.
+        near = (self.depths[:, rows, columns] < FARTHEST_M).all(axis=0)
+        self.rows, self.columns = rows[near], columns[near]
         self.focal = float(self.matrix[0, 0])
 
     def depth(self, number: int) -> Floats:
@@ -208,15 +210,15 @@ def by_hypersim(folder: Path, sources: Path, truth: Truth) -> Iterator[tuple[flo
         yield truth.missed(number, origins, directions), 1000.0 * float(apart)
 
 
-def by_nerfstudio(parser: Any, truth: Truth) -> Iterator[tuple[float, float]]:
-    """Cast rays of one of nerfstudio's parsers."""
+def by_nerfstudio(parser: Any, truth: Truth, middle_px: float) -> Iterator[tuple[float, float]]:
+    """Cast rays of one of nerfstudio's parsers, in which a pixel's middle has that coordinate."""
     import cv2
     import torch
 
     read = parser.get_dataparser_outputs("train")
     depths = read.metadata["depth_filenames"]
     for number in range(PICTURES):
-        coords = np.stack([truth.rows, truth.columns], axis=1) + 0.5
+        coords = np.stack([truth.rows, truth.columns], axis=1) + middle_px
         made = read.cameras.generate_rays(
             camera_indices=torch.full((len(coords), 1), number),
             coords=torch.tensor(coords, dtype=torch.float32),
@@ -238,12 +240,13 @@ def judge(folder: Path, sources: Path) -> None:
 
     def scannet(*_: Any) -> Iterator[tuple[float, float]]:
         asked = {**plain, "train_split_fraction": 1.0, "data": folder / "scannet"}
-        return by_nerfstudio(ScanNetDataParserConfig(**asked).setup(), truth)
+        # ScanNet counts from the first pixel's middle, and its parser leaves that as it is.
+        return by_nerfstudio(ScanNetDataParserConfig(**asked).setup(), truth, 0.0)
 
     def nerfstudio(*_: Any) -> Iterator[tuple[float, float]]:
         asked = {**plain, "orientation_method": "none", "eval_mode": "all"}
         asked["data"] = folder / "nerfstudio"
-        return by_nerfstudio(NerfstudioDataParserConfig(**asked).setup(), truth)
+        return by_nerfstudio(NerfstudioDataParserConfig(**asked).setup(), truth, 0.5)
 
     readers: dict[str, Callable[..., Iterator[tuple[float, float]]]] = {
         "nerfstudio|nerfstudio": nerfstudio,
@@ -272,14 +275,13 @@ def _parts(path: Path, names: tuple[str, ...]) -> Any:
     import ast
 
     import torch
+    from packaging import version
 
     tree = ast.parse(path.read_text())
     kept = [one for one in tree.body if isinstance(one, ast.FunctionDef) and one.name in names]
     made = types.ModuleType(path.stem)
-    made.__dict__.update(torch=torch, np=np)
+    made.__dict__.update(torch=torch, np=np, pver=version)
     exec(compile(ast.Module(kept, []), str(path), "exec"), made.__dict__)
-    for one in kept:
-        getattr(made, one.name)
     return made
 
 

@@ -106,7 +106,9 @@ class UsdMaterials:
             for slot, (texture, alpha) in maps.items():
                 file = self.textures.of(texture, alpha=alpha).name
                 if slot == "base_colour":
-                    self._write_picture(path, slot, file, material.base_colour)
+                    # Blender multiplies alpha by the scale of red: it stays 1 where alpha is all.
+                    colour = material.base_colour[:3] if _has_colour(material, lit) else (1.0,) * 3
+                    self._write_picture(path, slot, file, (*colour, material.base_colour[3]))
                     if any(material.emission):
                         self._write_picture(path, "emission", file, (*material.emission, 1.0))
                 elif slot == "normal":
@@ -120,7 +122,7 @@ class UsdMaterials:
         """Write what of light is sent back, and what is emitted."""
         text = self._text
         textured, colour = "base_colour" in maps, material.base_colour[:3]
-        if textured and any(colour):
+        if textured and _has_colour(material, lit=False):
             text.connect("color3f", "inputs:diffuseColor", f"{path}/base_colour.outputs:rgb")
         else:
             text.attribute("color3f", "inputs:diffuseColor", vector(colour))
@@ -131,7 +133,7 @@ class UsdMaterials:
 
     def _write_glow(self, material: Material, path: str, maps: Maps) -> None:
         """Write baked light as emission; other light is mirrored alone."""
-        if metalness(material) > 0.5:
+        if _has_colour(material, lit=True):
             self._write_colour(material, path, maps)
         else:
             self._text.attribute("color3f", "inputs:diffuseColor", vector((0.0, 0.0, 0.0)))
@@ -188,6 +190,11 @@ class UsdMaterials:
             text.attribute("float3", "outputs:rgb")
             for channel in "gba":
                 text.attribute("float", f"outputs:{channel}")
+
+
+def _has_colour(material: Material, lit: bool) -> bool:
+    """Return whether a surface sends light back: not one by baked light, unless it is metal."""
+    return any(material.base_colour[:3]) and (not lit or metalness(material) > 0.5)
 
 
 def _surface_name(friction: float, restitution: float) -> str:

@@ -19,7 +19,7 @@ __all__ = ["ExportFiles"]
 
 
 class ExportFiles:
-    """Answers requests for ``/export/FORMAT``, one at a time.
+    """Answers requests for ``/export/FORMAT``, with ``?light=baked`` in baked light, one at a time.
 
     Parameters
     ----------
@@ -46,7 +46,8 @@ class ExportFiles:
             return web.Response(status=503, text="another export is being written\n")
         async with self._one_at_a_time:
             try:
-                making = asyncio.to_thread(exported_file, self._simulation, suffix)
+                light = request.query.get("light", "lamps")
+                making = asyncio.to_thread(exported_file, self._simulation, suffix, light)
                 name, data = await asyncio.wait_for(making, self._deadline_s)
             except (SailenvError, asyncio.TimeoutError) as problem:
                 text = str(problem) or f"no export within {self._deadline_s:g} s"
@@ -59,7 +60,7 @@ class ExportFiles:
         )
 
 
-def exported_file(simulation: Simulation, suffix: str) -> tuple[str, bytes]:
+def exported_file(simulation: Simulation, suffix: str, light: str = "lamps") -> tuple[str, bytes]:
     """Return a file's name and bytes; a ZIP archive where the format needs a folder beside it.
 
     Parameters
@@ -67,10 +68,18 @@ def exported_file(simulation: Simulation, suffix: str) -> tuple[str, bytes]:
     simulation : Simulation
     suffix : str
         One of `SCENE_FORMATS`.
+    light : str
+        As `export_scene` takes it.
+
+    Raises
+    ------
+    InvalidRequest
+        If the format, or the light as it is now, cannot be had.
     """
     stem = Path(simulation.info.scene.replace(":", "_")).stem
     with tempfile.TemporaryDirectory(prefix="sailenv-export-") as folder:
-        report = export_scene(simulation, Path(folder) / f"{stem}{suffix}")
+        path = Path(folder) / f"{stem}{suffix}"
+        report = export_scene(simulation, path, light=light)  # type: ignore[arg-type]  # it checks
         if report.folder is None:
             return report.file.name, report.file.read_bytes()
         archive = io.BytesIO()

@@ -26,6 +26,7 @@ export class ScenePanel {
   #overwrite;
   #saved;
   #format;
+  #lit;
   #exported;
   #seed;
   #factor;
@@ -53,6 +54,7 @@ export class ScenePanel {
     this.#saved = el("p", { class: "advice", id: "saved" });
     this.#format = el("select", { id: "export-format" },
       ...FORMATS.map(([name, programs]) => el("option", { value: name }, `${name}: ${programs}`)));
+    this.#lit = el("input", { type: "checkbox", id: "export-lit", title: "glb and OpenUSD, of a room whose light is baked" });
     this.#exported = el("p", { class: "advice", id: "exported" });
     this.#seed = el("input", { type: "number", min: 0, step: 1, id: "seed" });
     this.#factor = el("input", {
@@ -103,6 +105,7 @@ export class ScenePanel {
       section(
         "Export for other programs",
         line("format", this.#format),
+        line("baked light", this.#lit),
         el("div", { class: "buttons" },
           button("Download", () => this.#export(), { kind: "export", title: "The scene as it is now" })),
         this.#exported,
@@ -213,7 +216,9 @@ export class ScenePanel {
     const format = this.#format.value;
     say(this.#exported, "being written …");
     try {
-      const answer = await fetch(`export/${format}${location.search}`);
+      const asked = new URLSearchParams(location.search);
+      if (this.#lit.checked) asked.set("light", "baked");
+      const answer = await fetch(`export/${format}?${asked}`);
       if (!answer.ok) throw new Error(await answer.text());
       const told = answer.headers.get("Content-Disposition") ?? "";
       const name = /filename="([^"]+)"/.exec(told)?.[1] ?? `scene.${format}`;

@@ -22,10 +22,12 @@ from sailenv_ros.scene_export.gathering import exported_world
 from sailenv_ros.scene_export.glb import write_glb
 from sailenv_ros.scene_export.lit_picture import lit_picture
 from sailenv_ros.scene_export.usd import write_usda
+from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.model import Material
+from sailenv_ros.viewer.export_files import exported_file
 from tests.support.baked import GRID, SIZE, chart, layer
 from tests.unit.scene_export.test_glb import Glb
 from tests.unit.scene_export.usda import Prim, read_usda
@@ -192,6 +194,14 @@ def _mesh(prims: dict[str, Prim], name: str) -> Prim:
         if prim.kind == "Mesh" and path.startswith(f"/lit/Objects/{name}/geometry")
     )
     return found
+
+
+def test_the_viewer_offers_light_that_is_there(path: Path) -> None:
+    with Simulation(path, mode="lockstep", light="plain") as simulation:
+        name, data = exported_file(simulation, ".glb")
+        assert (name, data[:4]) == ("lit.glb", b"glTF")
+        with pytest.raises(InvalidRequest, match="is not baked"):
+            exported_file(simulation, ".glb", "baked")
 
 
 @pytest.mark.parametrize(
