@@ -23,7 +23,7 @@ LONGEST_SIDE_PX, FINEST = 4096, 4
 """Of the picture; a texel of the light map becomes at most so many along each side."""
 
 GUTTER_PX = 3.0
-"""Surfaces go on beyond their edges for so long, for filters and the blocks of JPEG."""
+"""Surfaces reach beyond their edges by so much, for filters and the blocks of JPEG."""
 
 CHUNK_PX = 1 << 20
 """Pixels that are looked at together."""
