@@ -6,13 +6,13 @@
     python -m benchmarks.foreign_pictures write FOLDER --judges judges
     python -m benchmarks.foreign_pictures views FOLDER
     opensplat FOLDER/views -n 3000 --val --val-image 000000.png --val-render FOLDER/seen
-    python -m benchmarks.foreign_pictures sheet FOLDER -o docs/images/export.jpg [--splats PICTURE]
+    python -m benchmarks.foreign_pictures sheet FOLDER [-o PICTURE] [--splats FOLDER/seen]
 
 `write` exports `room_01` as MJCF and as USD with lamps and with baked light, and has Cycles trace
 the former, show the latter, and MuJoCo draw. Radiance is developed as ours is, at the exposure at
 which it is most like our picture; that and the PSNR are printed. `views` exports pictures for
 https://github.com/pierotofy/OpenSplat, which trains Gaussians on processors too; the first one is
-ours, is held back, and what it draws there is `--splats`.
+ours, is held back, and what it draws there lies in the folder `--splats`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,8 @@ TILES = {
     "lamps": "Cycles traces the lamps of .usda",
     "lit": "Cycles shows the baked light of .usda",
     "mujoco": "MuJoCo draws .xml",
-    "splats": "Gaussians from colmap",
+    "points": "Gaussians at our points, nerfstudio",
+    "splats": "Gaussians after {steps} steps",
 }
 
 
@@ -54,12 +55,19 @@ def write(folder: Path, judges: Path) -> None:
         for name in ("lamps.usda", "room.xml"):
             export_scene(simulation, folder / name, overwrite=True)
         around = simulation.read(lambda core: core.world.contents.environment)
+    assert around.sky is not None
     sky = np.asarray(around.sky.radiance[..., ::-1], np.float32)
     cv2.imwrite(str(folder / "sky.hdr"), sky)
     size = [str(side) for side in SIZE]
     script = str(Path(__file__).with_name("blender_picture.py"))
     for name, samples in (("lit", "8"), ("lamps", "48")):
-        command = [judges / "bpy/bin/python", script, folder / f"{name}.usda", "eye", *size]
+        command: list[str | Path] = [
+            judges / "bpy/bin/python",
+            script,
+            folder / f"{name}.usda",
+            "eye",
+            *size,
+        ]
         command += [samples, folder / "sky.hdr", folder / f"{name}.npy"]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     script = str(Path(__file__).with_name("mujoco_picture.py"))
@@ -99,9 +107,17 @@ def sheet(folder: Path, output: Path, splats: Path | None) -> None:
         pictures[name] = picture_of(radiance, stops)
         error = np.square(pictures[name].astype(float) - ours).mean()
         print(f"{name}: {stops:+.2f} stops, PSNR {10.0 * np.log10(255.0**2 / error):.1f} dB")
-    if splats is not None:
-        with Image.open(splats) as picture:
-            pictures["splats"] = np.asarray(picture.convert("RGB").resize(SIZE))
+    drawn = sorted(splats.glob("*.png"), key=lambda path: int(path.stem)) if splats else []
+    for name, file in zip(
+        ("points", "splats"), (drawn[0], drawn[-1]) if drawn else (), strict=False
+    ):
+        with Image.open(file) as picture:
+            pictures[name] = np.asarray(picture.convert("RGB").resize(SIZE))
+    if drawn:
+        with Image.open(drawn[-1]) as last, Image.open(folder / "views/images/000000.png") as meant:
+            pair = [np.asarray(one.convert("RGB"), float) for one in (last, meant)]
+        error = np.square(pair[0] - pair[1]).mean()
+        print(f"splats: {drawn[-1].stem} steps, PSNR {10.0 * np.log10(255.0**2 / error):.1f} dB")
     shown = [name for name in TILES if name in pictures]
     rows = -(-len(shown) // 2)
     made = Image.new("RGB", (2 * SIZE[0], rows * SIZE[1]), "white")
@@ -109,11 +125,12 @@ def sheet(folder: Path, output: Path, splats: Path | None) -> None:
     for place, name in enumerate(shown):
         tile = Image.fromarray(pictures[name])
         pen = ImageDraw.Draw(tile)
-        left, top, right, bottom = pen.textbbox((8, 6), TILES[name], font=font)
+        words = TILES[name].format(steps=drawn[-1].stem if drawn else "")
+        left, top, right, bottom = pen.textbbox((8, 6), words, font=font)
         pen.rectangle((left - 4, top - 3, right + 4, bottom + 3), fill="black")
-        pen.text((8, 6), TILES[name], fill="white", font=font)
+        pen.text((8, 6), words, fill="white", font=font)
         made.paste(tile, (place % 2 * SIZE[0], place // 2 * SIZE[1]))
-    made.save(output, quality=84, optimize=True)
+    made.save(output, quality=72, optimize=True)
 
 
 def main() -> None:

@@ -166,7 +166,7 @@ def by_nice_slam(folder: Path, sources: Path, truth: Truth) -> Iterator[tuple[fl
 def by_hypersim(folder: Path, sources: Path, truth: Truth) -> Iterator[tuple[float, float]]:
     """Cast rays by the code of Hypersim's notebook."""
     import h5py
-    import pandas as pd
+    import pandas as pd  # type: ignore[import-untyped]
 
     notebook = json.loads(
         (sources / "ml-hypersim/contrib/mikeroberts3000/jupyter"
@@ -223,8 +223,8 @@ def by_nerfstudio(parser: Any, truth: Truth, middle_px: float) -> Iterator[tuple
             camera_indices=torch.full((len(coords), 1), number),
             coords=torch.tensor(coords, dtype=torch.float32),
         )
-        depth = cv2.imread(str(depths[number]), cv2.IMREAD_UNCHANGED).astype(np.float64)
-        depth *= read.metadata["depth_unit_scale_factor"]
+        steps = cv2.imread(str(depths[number]), cv2.IMREAD_UNCHANGED)
+        depth = np.asarray(steps, np.float64) * read.metadata["depth_unit_scale_factor"]
         apart = np.abs(depth[truth.rows, truth.columns] - truth.depth(number)).max()
         off = truth.missed(number, made.origins.numpy(), made.directions.numpy())
         yield off, 1000.0 * float(apart)
@@ -278,7 +278,9 @@ def _parts(path: Path, names: tuple[str, ...]) -> Any:
     from packaging import version
 
     tree = ast.parse(path.read_text())
-    kept = [one for one in tree.body if isinstance(one, ast.FunctionDef) and one.name in names]
+    kept: list[ast.stmt] = [
+        one for one in tree.body if isinstance(one, ast.FunctionDef) and one.name in names
+    ]
     made = types.ModuleType(path.stem)
     made.__dict__.update(torch=torch, np=np, pver=version)
     exec(compile(ast.Module(kept, []), str(path), "exec"), made.__dict__)

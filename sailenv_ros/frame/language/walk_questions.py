@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator
 
@@ -11,9 +12,9 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.language.asking import Asker, Question, balanced_pairs
 from sailenv_ros.frame.language.relation_laws import View
 from sailenv_ros.frame.language.seen_objects import SeenObject
-from sailenv_ros.space.free_space import BodySize, FreeSpace
+from sailenv_ros.space.free_space import FREE, OCCUPIED, BodySize, FreeSpace
 
-__all__ = ["walk_questions"]
+__all__ = ["reached_cells", "walk_questions"]
 
 NEAR_M, FAR_M = 0.5, 0.8
 """Distance from an object up to which a place reaches it, and from which it does not [m]."""
@@ -45,21 +46,40 @@ def walk_questions(asker: Asker) -> Iterator[Question]:
         if not space.is_free(start):
             continue
         away = space.distances_m(start)
+        reached = np.isfinite(away)
+        # A way of one cell's width is there or not by how cells happen to lie.
+        wide, tight = (reached_cells(space, start, wider=wider) for wider in (True, False))
         yes, no = [], []
         for one in asker.named:
             near = _nearness(space, one)
-            reached = np.isfinite(away)
             nearest = float(near[reached].min())
             proof = {"id": one.id, "radius_m": space.body.radius_m, "nearest_m": nearest}
             robot = _size(space.body)
-            if nearest <= NEAR_M:
+            if near[wide].min(initial=np.inf) <= NEAR_M:
                 yes.append(asker.ask("reach", "yes", (one,), proof, robot=robot))
                 if space is view.facts.spaces[0]:
                     ways = np.where(near <= NEAR_M, away, np.inf)
                     yield from _path(asker, view, space, one, ways, reached & (near <= WIDER_M))
-            elif nearest > FAR_M:
+            elif near[tight].min() > FAR_M:
                 no.append(asker.ask("reach", "no", (one,), proof, robot=robot))
         yield from balanced_pairs(asker, yes, no)
+
+
+def reached_cells(
+    space: FreeSpace, start: NDArray[np.float64], *, wider: bool
+) -> NDArray[np.bool_]:
+    """Return (H, W) the cells that a robot reaches that is a cell wider at each side, or narrower.
+
+    None where the wider one cannot stand at the start.
+    """
+    around = np.pad(space.free, 1)
+    height, width = space.cells.shape
+    shifted = np.stack([around[y : y + height, x : x + width] for y in range(3) for x in range(3)])
+    free = shifted.all(axis=0) if wider else shifted.any(axis=0)
+    other = dataclasses.replace(space, cells=np.where(free, FREE, OCCUPIED).astype(np.int8))
+    if not other.is_free(start):
+        return np.zeros_like(free)
+    return np.isfinite(other.distances_m(start))
 
 
 def _nearness(space: FreeSpace, one: SeenObject) -> NDArray[np.float64]:

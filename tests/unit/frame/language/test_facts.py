@@ -22,8 +22,10 @@ from sailenv_ros.frame.language import (
 )
 from sailenv_ros.frame.language.material_words import material_word
 from sailenv_ros.frame.language.seen_objects import seen_objects
+from sailenv_ros.frame.language.walk_questions import reached_cells
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.scene_facts import scene_facts
+from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
@@ -137,6 +139,22 @@ def test_ways_begin_where_the_goal_is(graph: SceneGraph) -> None:
         goal = graph.objects[one.objects[0]]
         flat = corners[-1] + (0.0, 0.0, goal.middle_m[2])
         assert goal.distance_to_box_m(flat) <= 0.5
+
+
+@pytest.mark.parametrize(
+    ("gap", "wider", "narrower"), [(0, False, False), (1, False, True), (3, True, True)]
+)
+def test_a_gap_of_one_cell_is_not_asked_about(gap: int, wider: bool, narrower: bool) -> None:
+    """A wall across a room with a gap of so many cells: what is asked holds for both robots."""
+    cells = np.zeros((20, 20), np.int8)
+    cells[:, 8:13] = 100
+    cells[10 : 10 + gap, 8:13] = 0
+    space = FreeSpace(cells=cells, origin_m=(0.0, 0.0), body=BodySize())
+    for own, expected in ((True, wider), (False, narrower)):
+        found = reached_cells(space, np.array([0.2, 0.5]), wider=own)
+        assert found[10, 3]
+        assert found[10, 16] == expected
+    assert not reached_cells(space, np.array([0.01, 0.5]), wider=True).any()
 
 
 def test_what_moved_between_pictures_is_told(simulation: Simulation) -> None:
