@@ -11,7 +11,6 @@ import ctypes
 import resource
 
 from sailenv_ros.errors import InvalidState
-from sailenv_ros.system.mapped_file import give_back_pages
 
 __all__ = ["give_back_freed_memory", "keep_freed_memory", "no_memory", "require_address_space"]
 
@@ -44,6 +43,8 @@ def give_back_freed_memory() -> None:
     In sim_node's way of keeping memory, twelve changes among the three rooms: 0.9 to 2.0 GiB with
     it, 2.0 to 2.2 GiB without; it takes 55 ms at most.
     """
+    from sailenv_ros.system.mapped_file import give_back_pages  # needs NumPy, and commands do not
+
     give_back_pages()
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).malloc_trim(0)
