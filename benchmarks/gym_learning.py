@@ -32,7 +32,7 @@ SIDE, REACH_M = 20, 5.0
 SETTINGS: dict[str, dict[str, Any]] = {
     # Each turn is rewarded at once; a way to something seen takes dozens of steps.
     "Track": {"gamma": 0.9, "gae_lambda": 0.9, "n_steps": 128, "batch_size": 256},
-    "Search": {"gamma": 0.98, "gae_lambda": 0.95, "n_steps": 256, "batch_size": 256},
+    "Search": {"gamma": 0.98, "n_steps": 256, "batch_size": 256, "ent_coef": 0.01},
 }
 """Of PPO; all else is its default."""
 
