@@ -29,8 +29,7 @@ def dolls_house(b: PieceBuilder, v: Values) -> None:
     for low in levels[:-1]:
         split = b.between(-0.1, 0.1) * w
         b.box(v.wall, (d - 0.03, 0.006, tall), (-0.004, split, low + wall + tall / 2), bevel=0.001)
-        for y, side in ((split / 2 - w / 4, -1), (split / 2 + w / 4, 1)):
-            del side
+        for y in (split / 2 - w / 4, split / 2 + w / 4):
             _furnish(b, y, float(low) + wall, tall, d)
     slope = np.array([(-0.54 * w, 0.0), (0.54 * w, 0.0), (0.0, h - body)])
     gable = placed(extruded(slope * (0.86, 0.86), d - 0.01, bevel=0.001), turn_deg=(90, 0, 0))

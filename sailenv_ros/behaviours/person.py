@@ -147,24 +147,21 @@ def person_behaviour(
     """Turn what one who stands and has paused begins into a behaviour kind; used as a decorator."""
 
     def decorate(function: PersonFunction) -> BehaviourKind:
-        def behave(
+        def act(
             given: PersonParameters,
             time_s: float,
-            body: BodyState,
+            person: Person | None,
             memory: dict[str, Any],
             rng: np.random.Generator,
-        ) -> Action:
-            person = body.person
+        ) -> None:
             if person is None or time_s < 0.0 or person.activity != "standing":
                 memory["walks"] = person is not None and person.activity in _PAUSES_AFTER
             elif memory.pop("walks", False):
                 pause(given, time_s, memory, rng)
             elif not _waits(memory, time_s) and not function(given, time_s, person, memory, rng):
                 memory["until_s"] = time_s + ASK_AGAIN_S
-            return Action()
 
-        behave.__doc__ = function.__doc__
-        return BehaviourKind(type=type_, parameters=parameters, function=behave)
+        return _kind(type_, parameters, act, function.__doc__)
 
     return decorate
 
@@ -213,22 +210,38 @@ def resting_behaviour(
     """Turn a way to rest into a behaviour kind; used as a decorator."""
 
     def decorate(function: Callable[[Any, Person], Rest]) -> BehaviourKind:
-        def behave(
+        def act(
             given: PersonParameters,
             time_s: float,
-            body: BodyState,
+            person: Person | None,
             memory: dict[str, Any],
             rng: np.random.Generator,
-        ) -> Action:
-            if body.person is not None and time_s >= 0.0:
-                rest = function(given, body.person)
-                _rest_somewhere(given, rest, time_s, body.person, memory, rng)
-            return Action()
+        ) -> None:
+            if person is not None and time_s >= 0.0:
+                _rest_somewhere(given, function(given, person), time_s, person, memory, rng)
 
-        behave.__doc__ = function.__doc__
-        return BehaviourKind(type=type_, parameters=parameters, function=behave)
+        return _kind(type_, parameters, act, function.__doc__)
 
     return decorate
+
+
+def _kind(
+    type_: str, parameters: type[PersonParameters], act: Callable[..., None], doc: str | None
+) -> BehaviourKind:
+    """Return the kind of a behaviour that gives orders to a person, and moves no body itself."""
+
+    def behave(
+        given: PersonParameters,
+        time_s: float,
+        body: BodyState,
+        memory: dict[str, Any],
+        rng: np.random.Generator,
+    ) -> Action:
+        act(given, time_s, body.person, memory, rng)
+        return Action()
+
+    behave.__doc__ = doc
+    return BehaviourKind(type=type_, parameters=parameters, function=behave)
 
 
 def _rest_somewhere(
