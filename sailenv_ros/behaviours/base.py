@@ -132,6 +132,8 @@ class BodyState:
 class Action:
     """Commands to the physics engine for one body and the next step; ``None`` changes nothing.
 
+    Velocities of an object on a joint count along the joint.
+
     Attributes
     ----------
     force_n, torque_nm : (3,) tuple of float or None
@@ -147,10 +149,6 @@ class Action:
         Of that joint, set before the step [rad] or [m].
     idle_until_s : float or None
         Time on the behaviour's clock before which it need not be asked again [s].
-
-    Notes
-    -----
-    Of an object on a joint, velocities that are asked for count along the joint.
     """
 
     force_n: Vector3 | None = None
@@ -269,12 +267,16 @@ class BehaviourKind:
     batch : callable or None
         ``batch(running, times_s, bodies) -> Actions``: the same for N bodies at once, where that
         is faster; what becomes of one body must not depend on the others.
+    joint_alone : bool
+        True if the function looks at nothing but the joint of an object on one: the rest of the
+        state, which costs ten times as much, is that of a body at rest in the origin.
     """
 
     type: str
     parameters: ParametersType
     function: BehaviourFunction
     batch: BatchFunction | None = None
+    joint_alone: bool = False
 
     @property
     def summary(self) -> str:
@@ -317,14 +319,12 @@ class RunningBehaviour:
 
 
 def behaviour(
-    type_: str, parameters: type[BehaviourParameters]
+    type_: str, parameters: type[BehaviourParameters], *, joint_alone: bool = False
 ) -> Callable[[BehaviourFunction], BehaviourKind]:
     """Turn a function into a behaviour kind of that name; used as a decorator."""
-
-    def decorate(function: BehaviourFunction) -> BehaviourKind:
-        return BehaviourKind(type=type_, parameters=parameters, function=function)
-
-    return decorate
+    return lambda function: BehaviourKind(
+        type=type_, parameters=parameters, function=function, joint_alone=joint_alone
+    )
 
 
 def batch_behaviour(

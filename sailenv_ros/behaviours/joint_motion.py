@@ -61,7 +61,7 @@ class OpenAndClose(BehaviourParameters):
         return True
 
 
-@behaviour("joint_motion", JointMotion)
+@behaviour("joint_motion", JointMotion, joint_alone=True)
 def joint_motion(
     parameters: JointMotion,
     time_s: float,
@@ -85,7 +85,7 @@ def joint_motion(
     return Action(joint_velocity=_towards(parameters.first + span * way, body, fastest))
 
 
-@behaviour("open_and_close", OpenAndClose)
+@behaviour("open_and_close", OpenAndClose, joint_alone=True)
 def open_and_close(
     parameters: OpenAndClose,
     time_s: float,

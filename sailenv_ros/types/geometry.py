@@ -134,7 +134,8 @@ class Pose:
 
     def matrix(self) -> Matrix:
         """Return the (4, 4) float64 transform world_from_body; a new array."""
-        result = np.eye(4)
+        result = np.zeros((4, 4))
+        result[3, 3] = 1.0
         result[:3, :3] = _rotation_matrix(self.orientation_xyzw)
         result[:3, 3] = self.position_m
         return result
@@ -299,10 +300,10 @@ def _unit_quat_xyzw(values: ArrayLike) -> Quaternion:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
         raise InvalidRequest("orientation", values, accepted) from None
-    if array.shape != (4,) or not np.isfinite(array).all():
+    if array.shape != (4,):
         raise InvalidRequest("orientation", values, accepted)
     norm = math.sqrt(float(array.dot(array)))  # as of `linalg.norm`, without its overhead
-    if abs(norm - 1.0) > UNIT_TOLERANCE:
+    if not abs(norm - 1.0) <= UNIT_TOLERANCE:  # nor is it, if a number is not finite
         raise InvalidRequest("orientation", values, accepted)
     # A norm that is 1 to rounding is left alone, so that a pose survives copying bit for bit.
     if abs(norm - 1.0) > 1e-15:
@@ -325,13 +326,11 @@ def _product(p: Quaternion, q: Quaternion) -> Quaternion:
 def _rotation_matrix(quat_xyzw: Quaternion) -> Matrix:
     """Rotation matrix of a unit quaternion (the textbook form; no library call per body)."""
     x, y, z, w = quat_xyzw
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    return np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ])  # fmt: skip
 
 
 def vector_angle_deg(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:

@@ -43,6 +43,11 @@ class BulletClient:
 
     Attribute access gives PyBullet's function of that name, bound to this client:
     ``client.getNumBodies()``.
+
+    Attributes
+    ----------
+    moments : int
+        Another number after whatever may have moved all bodies: a step, or a state restored.
     """
 
     def __init__(self) -> None:
@@ -53,6 +58,8 @@ class BulletClient:
                 "PyBullet gave no physics server (too many are open in this process)"
             )
         self._gravity = (0.0, 0.0, 0.0)
+        self.moments = 0
+        self._step, self._restore = self._bind("stepSimulation"), self._bind("restoreState")
 
     @property
     def gravity(self) -> tuple[float, float, float]:
@@ -75,6 +82,16 @@ class BulletClient:
         bound = self._bind(name)
         self.__dict__[name] = bound  # the next call of it finds it there
         return bound
+
+    def stepSimulation(self) -> None:  # noqa: N802  # PyBullet's name
+        """Advance by a step."""
+        self.moments += 1
+        self._step()
+
+    def restoreState(self, state: int) -> None:  # noqa: N802  # PyBullet's name
+        """Put all back to where it was when a state was saved."""
+        self.moments += 1
+        self._restore(state)
 
     def close(self) -> None:
         """Free the physics world; a second call does nothing."""

@@ -70,6 +70,12 @@ class JointTree:
         self._driven: set[int] = set()
         self._was_driven: set[int] = set()
         self._last = [(0.0, 0.0)] * len(self._links)
+        self._moving = tuple(
+            (number, number - self._shift, link.joint.spec.bounds)
+            for number, link in enumerate(self._links)
+            if link.joint.spec.moves
+        )
+        self._known_at = -1
         self.bullet_id = build_tree(client, self._links, world_from_rest)
         for number, link in enumerate(self._links):
             set_dynamics(client, self.bullet_id, self.link_of(number), link)
@@ -115,10 +121,10 @@ class JointTree:
             return 0.0, 0.0
         if number in self._rolled:
             return self._rolled[number]
+        if self._known_at == self._client.moments:
+            return self._last[number]
         position, velocity = self._client.getJointState(self.bullet_id, self.link_of(number))[:2]
-        if not (math.isfinite(position) and math.isfinite(velocity)):
-            name = link.placement.name
-            raise PhysicsError(f"the motion of {name!r} is no longer finite; reset the scene")
+        self._require_finite(number, position, velocity)
         return position, velocity
 
     def set(self, number: int, position: float, velocity: float = 0.0) -> None:
@@ -231,24 +237,26 @@ class JointTree:
                     self._client.constants.TORQUE_CONTROL,
                     force=drive.target,
                 )
-        for number in sorted(self._was_driven - self._driven):
-            self.release(number)
+        if self._was_driven:
+            for number in sorted(self._was_driven - self._driven):
+                self.release(number)
 
     def after_step(self) -> bool:
         """Hold joints within their limits, and what friction holds; tell if something moved."""
         moved = False
-        for number, link in enumerate(self._links):
-            if not link.joint.spec.moves:
-                continue
-            position, velocity = self.state(number)
+        read, body = self._client.getJointState, self.bullet_id
+        for number, engine_link, (low, high) in self._moving:
             if number in self._rolled:
-                self._rolled[number] = position + velocity / STEPS_PER_SECOND, velocity
-                moved |= velocity != 0.0
+                angle, speed = self._rolled[number]
+                self._rolled[number] = angle + speed / STEPS_PER_SECOND, speed
+                moved |= speed != 0.0
                 continue
+            position, velocity = read(body, engine_link)[:2]
             before, speed = self._last[number]
             if position == before and velocity == speed:
+                self._last[number] = position, velocity  # of a zero the sign may be another
                 continue
-            low, high = link.joint.spec.bounds
+            self._require_finite(number, position, velocity)
             free = number not in self._driven and number not in self._motors
             if free and self._is_held(number, position - before, velocity):
                 position, velocity = before, 0.0
@@ -258,8 +266,16 @@ class JointTree:
                 self.set(number, position)
             moved |= position != before
             self._last[number] = (position, velocity)
-        self._was_driven, self._driven = self._driven, set()
+        if self._was_driven or self._driven:
+            self._was_driven, self._driven = self._driven, set()
+        # What the engine knows of joints changes by a step, or by `set`, and by nothing else.
+        self._known_at = self._client.moments
         return moved
+
+    def _require_finite(self, number: int, position: float, velocity: float) -> None:
+        if not (math.isfinite(position) and math.isfinite(velocity)):
+            name = self._links[number].placement.name
+            raise PhysicsError(f"the motion of {name!r} is no longer finite; reset the scene")
 
     def _is_held(self, number: int, moved: float, velocity: float) -> bool:
         """Return whether friction holds a joint that nobody drives."""

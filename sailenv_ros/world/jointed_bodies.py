@@ -34,6 +34,10 @@ _STILL: Twist = (np.zeros(3), np.zeros(3))
 for _zeros in _STILL:
     _zeros.flags.writeable = False
 
+_AT_REST = BodyState(
+    pose=Pose(), linear_velocity=_STILL[0], angular_velocity=_STILL[1], mass_kg=0.0
+)
+
 
 def make_body(client: BulletClient, placement: Placement) -> Body:
     """Make the body of a placement; one on a joint is in the engine once a tree has it."""
@@ -334,7 +338,7 @@ class JointedBody(Body):
 
     def _state(self, running: RunningBehaviour, frustum_planes: FrustumPlanes) -> BodyState:
         position, velocity = self.joint_state()
-        known = super()._state(running, frustum_planes)
+        known = _AT_REST if running.kind.joint_alone else super()._state(running, frustum_planes)
         return replace(
             known,
             joint_position=position,
