@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
-from scipy.spatial.transform import Rotation
 from std_msgs.msg import Header
 
 import sailenv_msgs.msg as msgs
@@ -123,6 +122,8 @@ def poses_of(transforms: np.ndarray[Any, Any]) -> list[Pose]:
     known = np.isfinite(transforms).all(axis=(1, 2))
     quats = np.full((len(transforms), 4), np.nan)
     if known.any():
+        from scipy.spatial.transform import Rotation  # takes long to import, and few need it
+
         quats[known] = Rotation.from_matrix(transforms[known, :3, :3]).as_quat()
     return [
         Pose(

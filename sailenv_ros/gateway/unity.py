@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.types.validation import vector
@@ -68,6 +67,8 @@ def orientation_xyzw_from_unity(
     InvalidRequest
         If an angle is not finite or beyond a million degrees.
     """
+    from scipy.spatial.transform import Rotation  # takes long to import, and few need it
+
     pitch, yaw, roll = vector(what, angles_deg, limit=1e6)
     unity = Rotation.from_euler("YXZ", (yaw, pitch, roll), degrees=True).as_matrix()
     # The same turn seen in the mirror: M R M^-1, of which M^-1 is the transpose.

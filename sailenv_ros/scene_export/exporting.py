@@ -22,7 +22,6 @@ from sailenv_ros.scene_export.losses import RICH, motion_losses
 from sailenv_ros.scene_export.motion import Moment, motion_of
 from sailenv_ros.scene_export.saving import require_free, save
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose, invert
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
@@ -138,6 +137,9 @@ def export_scene(
         library = SceneLibrary(allow_modules=allow_modules, baked_light=baked)
         with closing(library.build(described)) as world:
             if baked:
+                # It takes long to import, and who starts a simulator does not need it.
+                from sailenv_ros.simulation.finished_light import bake_missing
+
                 bake_missing(world)
             world.step(steps)
             agents = agents_in(world, library.agents_of(world.scene))
