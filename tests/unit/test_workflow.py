@@ -28,7 +28,7 @@ def steps() -> list[dict[str, Any]]:
 def test_a_pull_request_is_set_up_checked_and_tested() -> None:
     """By the scripts of the repository, in this order; each can be executed."""
     scripts = [step["run"].split()[0] for step in steps() if "run" in step]
-    assert scripts == ["scripts/setup", "scripts/check", "scripts/test"]
+    assert scripts == ["scripts/setup", "scripts/check", "scripts/sanitize", "scripts/test"]
     assert all(os.access(ROOT / script, os.X_OK) for script in scripts)
 
 

@@ -1,4 +1,4 @@
-// Three threads that call the pool at once, also from within a tile; run by test_sanitizers.py.
+// Three threads that call the pool at once, also from within a tile; run by test_hostile_input.py.
 #include "threads.h"
 
 #include <atomic>
