@@ -122,7 +122,7 @@ def before_doors(spec: SceneSpec) -> Iterator[tuple[float, float]]:
                     yield (x0 + x1) / 2 + doorway.at, y0 + side
 
 
-@pytest.mark.parametrize("room", [("bedroom", 1), ("kitchen", 2), ("apartment", 1)])
+@pytest.mark.parametrize("room", [("bedroom", 1), ("kitchen", 1), ("apartment", 0)])
 def test_every_object_is_seen_from_the_way(
     room: tuple[str, int], made: Made, library: SceneLibrary, tmp_path: Path
 ) -> None:
