@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -11,6 +12,11 @@ from sailenv_ros.system.resources import resource_path
 __all__ = ["SceneCatalogue"]
 
 SUFFIXES = (".yaml", ".yml")
+
+SETTLED_NS = 2_000_000_000
+"""Age of a folder's last change from which on its time tells of the next one [ns]."""
+
+_Kept = tuple[int, dict[str, Path]]
 
 
 class SceneCatalogue:
@@ -29,6 +35,7 @@ class SceneCatalogue:
             *(Path(path) for path in paths),
             resource_path("scenes") if own is None else own,
         )
+        self._kept: dict[Path, _Kept] = {}
 
     @property
     def folders(self) -> tuple[Path, ...]:
@@ -65,10 +72,28 @@ class SceneCatalogue:
     def _found(self) -> dict[str, Path]:
         found: dict[str, Path] = {}
         for folder in self._folders:
-            for path in sorted(folder.glob("*.y*ml")) if folder.is_dir() else ():
-                if path.suffix in SUFFIXES and path.is_file():
-                    found.setdefault(path.stem, path)
+            for name, path in self._files_of(folder).items():
+                found.setdefault(name, path)
         return found
+
+    def _files_of(self, folder: Path) -> dict[str, Path]:
+        """Return a folder's scenes: read when it changes, as every frame tells their names."""
+        try:
+            changed_ns = folder.stat().st_mtime_ns
+        except OSError:
+            return {}
+        kept = self._kept.get(folder)
+        if kept is not None and kept[0] == changed_ns:
+            return kept[1]
+        files = {
+            path.stem: path
+            for path in sorted(folder.glob("*.y*ml"), reverse=True)
+            if path.suffix in SUFFIXES and path.is_file()
+        }
+        self._kept.pop(folder, None)
+        if time.time_ns() - changed_ns > SETTLED_NS:
+            self._kept[folder] = changed_ns, files
+        return files
 
 
 def _is_file(path: Path) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.frame.frame import Frame
@@ -206,7 +206,7 @@ class Player:
             "room": place.room,
             "episode": place.episode,
             "habit": place.habit,
-            "drift": {name: asdict(record) for name, record in records.items()},
+            "drift": {name: record.to_json() for name, record in records.items()},
         }
         return replace(
             frame, agent="eye", epoch=1, revision=revision, sequence=place.frame,

@@ -130,7 +130,7 @@ class Stage:
         core = self._core
         if self._habit == "stand" and self._standing:
             return self._standing[0]
-        if not core.info.movers:
+        if not core.world.movers:
             return self._standing[0] if self._standing else _in_the_middle()
         pose = core.get_mover_pose()
         if self._habit == "fixate" and self._target:

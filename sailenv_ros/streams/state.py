@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 __all__ = ["Drift", "DriftRecord", "DriftValue", "StreamState", "progress", "tinted"]
 
@@ -36,6 +36,10 @@ class DriftRecord:
     values: Mapping[str, DriftValue]
     since: int
     active: bool
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it as recordings tell it."""
+        return {"values": dict(self.values), "since": self.since, "active": self.active}
 
 
 @dataclass(slots=True, kw_only=True)

@@ -116,7 +116,8 @@ class JointTable:
     def before_step(self) -> None:
         """Leave joints that nobody drives any more to their friction."""
         for tree in self._trees.values():
-            tree.before_step()
+            if tree.is_driven:
+                tree.before_step()
 
     def after_step(self) -> bool:
         """Hold joints within their limits; tell if any has moved."""

@@ -47,6 +47,11 @@ class JointTree:
     world_from_rest : Pose
         Of the first link's object while its joint's position is 0.
 
+    Attributes
+    ----------
+    is_driven : bool
+        False if nothing is to be told to its motors before the next step.
+
     Raises
     ------
     InvalidRequest
@@ -76,6 +81,7 @@ class JointTree:
             if link.joint.spec.moves
         )
         self._known_at = -1
+        self.is_driven, self._version = False, 0
         self.bullet_id = build_tree(client, self._links, world_from_rest)
         for number, link in enumerate(self._links):
             set_dynamics(client, self.bullet_id, self.link_of(number), link)
@@ -84,6 +90,14 @@ class JointTree:
             self.release(number)
         if self._is_free:
             self._client.resetBaseVelocity(self.bullet_id, *first.motion)
+
+    @property
+    def known_version(self) -> int:
+        """The number of what it carries: another one after that may have been moved.
+
+        -1 while the engine alone knows where that is: amidst a step, or if it moves freely.
+        """
+        return self._version if self._known_at == self._client.moments and not self._is_free else -1
 
     def link_of(self, number: int) -> int:
         """Return the engine's number of the link at a place in the tree."""
@@ -131,10 +145,12 @@ class JointTree:
         """Put a joint somewhere [rad] or [m], and let it move with a velocity from there."""
         self._client.resetJointState(self.bullet_id, self.link_of(number), position, velocity)
         self._last[number] = (position, velocity)
+        self._version += 1
 
     def drive(self, number: int, velocity: float) -> None:
         """Move a joint with a velocity [rad/s] or [m/s] as long as its effort suffices."""
         self._driven.add(number)
+        self.is_driven = True
         self._motor(number, velocity, self._links[number].joint.spec.effort)
         self.wake()
 
@@ -162,6 +178,7 @@ class JointTree:
     def follow(self, number: int, drive: JointDrive) -> None:
         """Let a joint's motor follow a target until something else is asked for."""
         self._motors[number] = drive
+        self.is_driven = True
         link, kinds = self.link_of(number), self._client.constants
         friction = self._links[number].joint.spec.friction
         if drive.mode == "position":
@@ -225,6 +242,7 @@ class JointTree:
         self._client.resetBasePositionAndOrientation(
             self.bullet_id, at.position_m, at.orientation_xyzw
         )
+        self._version += 1
         self.wake()
 
     def before_step(self) -> None:
@@ -240,6 +258,7 @@ class JointTree:
         if self._was_driven:
             for number in sorted(self._was_driven - self._driven):
                 self.release(number)
+        self.is_driven = bool(self._motors or self._driven or self._was_driven)
 
     def after_step(self) -> bool:
         """Hold joints within their limits, and what friction holds; tell if something moved."""
@@ -268,6 +287,8 @@ class JointTree:
             self._last[number] = (position, velocity)
         if self._was_driven or self._driven:
             self._was_driven, self._driven = self._driven, set()
+        if moved:
+            self._version += 1
         # What the engine knows of joints changes by a step, or by `set`, and by nothing else.
         self._known_at = self._client.moments
         return moved

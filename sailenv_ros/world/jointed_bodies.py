@@ -30,13 +30,9 @@ __all__ = ["JointedBody", "make_bodies", "make_body"]
 LONGEST_S = 1e4
 """Longest time that a motion to a position may take [s]."""
 
-_STILL: Twist = (np.zeros(3), np.zeros(3))
+_ORIGIN, _STILL = Pose(), (np.zeros(3), np.zeros(3))
 for _zeros in _STILL:
     _zeros.flags.writeable = False
-
-_AT_REST = BodyState(
-    pose=Pose(), linear_velocity=_STILL[0], angular_velocity=_STILL[1], mass_kg=0.0
-)
 
 
 def make_body(client: BulletClient, placement: Placement) -> Body:
@@ -52,8 +48,7 @@ def make_bodies(client: BulletClient, placements: Iterable[Placement]) -> list[B
     """Make the bodies of placements, all of them or none."""
     made: list[Body] = []
     try:
-        for placement in placements:
-            made.append(make_body(client, placement))
+        made.extend(make_body(client, placement) for placement in placements)
     except BaseException:
         for body in made:
             body.remove()
@@ -82,6 +77,7 @@ class JointedBody(Body):
         # Most joints rest, and what follows from the same numbers is the same.
         self._resting: tuple[Pose, Pose] | None = None
         self._posed: tuple[Pose, float, Pose, NDArray[np.float64]] | None = None
+        self._version = -1
         super().__init__(client, placement)
 
     # -- where it is -----------------------------------------------------------------------
@@ -109,6 +105,7 @@ class JointedBody(Body):
         """Become a link of a tree; `parent` carries it, None is the world."""
         self.tree, self._number, self.parent = tree, number, parent
         self._resting = self._posed = None
+        self._version = -1
         self._id = tree.bullet_id
         self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, self.link)[2])
 
@@ -151,8 +148,11 @@ class JointedBody(Body):
         return self._pose_now()[1]
 
     def _pose_now(self) -> tuple[Pose, NDArray[np.float64]]:
+        posed, version = self._posed, -1 if self.tree is None else self.tree.known_version
+        if posed is not None and version == self._version != -1:
+            return posed[2], posed[3]
+        self._version = version
         rest, position = self.rest_pose(), self.joint_state()[0]
-        posed = self._posed
         if posed is None or posed[0] is not rest or posed[1] != position:
             pose = link_pose(rest, self.joint, position)
             matrix = pose.matrix()
@@ -295,8 +295,6 @@ class JointedBody(Body):
             super().behave(running, time_s, frustum_planes)
             return
         action = running.act(time_s, self._state(running, frustum_planes))
-        if action.acts:
-            self.tree.wake()
         rate = action.joint_velocity
         slides = self.joint.spec.type == "slide"
         asked = action.linear_velocity if slides else action.angular_velocity
@@ -307,6 +305,8 @@ class JointedBody(Body):
             self.tree.set(self._number, action.joint_position)
         if rate is not None and self.joint.spec.moves:
             self.tree.drive(self._number, rate)
+        elif action.acts:
+            self.tree.wake()
         if action.force_n is not None:
             actuation.push(self._client, self._id, action.force_n, link=self.link)
         if action.torque_nm is not None:
@@ -338,10 +338,13 @@ class JointedBody(Body):
 
     def _state(self, running: RunningBehaviour, frustum_planes: FrustumPlanes) -> BodyState:
         position, velocity = self.joint_state()
-        known = _AT_REST if running.kind.joint_alone else super()._state(running, frustum_planes)
+        limits = self.joint.spec.bounds
+        if running.kind.joint_alone:
+            return BodyState(
+                pose=_ORIGIN, linear_velocity=_STILL[0], angular_velocity=_STILL[1], mass_kg=0.0,
+                joint_position=position, joint_velocity=velocity, joint_limits=limits,
+            )  # fmt: skip
         return replace(
-            known,
-            joint_position=position,
-            joint_velocity=velocity,
-            joint_limits=self.joint.spec.bounds,
-        )
+            super()._state(running, frustum_planes),
+            joint_position=position, joint_velocity=velocity, joint_limits=limits,
+        )  # fmt: skip

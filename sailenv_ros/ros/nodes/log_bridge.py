@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as rcutils
+from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.impl.rcutils_logger import RcutilsLogger
-from rclpy.logging import LoggingSeverity
 
 __all__ = ["LogBridge"]
 

@@ -1,4 +1,4 @@
-"""Drives every kernel with input that nobody should give; run by scripts/sanitize and test_hostile_input.py.
+"""Drives every kernel with input that nobody should give; see test_hostile_input.py.
 
     python -m tests.unit.native.hostile_input INSTRUCTION_SET...
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -60,3 +61,17 @@ def test_a_scene_that_is_added_later_is_found(folders: tuple[Path, Path]) -> Non
 
 def test_a_folder_that_is_not_there_holds_no_scenes(tmp_path: Path) -> None:
     assert SceneCatalogue([tmp_path / "none"], own=tmp_path).names == ()
+
+
+def test_what_comes_and_goes_is_known_at_once(tmp_path: Path) -> None:
+    """Though a folder that has not changed for long is not read again."""
+    (tmp_path / "hall.yaml").touch()
+    os.utime(tmp_path, (1.0, 1.0))
+    catalogue = SceneCatalogue(own=tmp_path)
+    for _ in range(2):
+        assert catalogue.names == ("hall",)
+    for names in (("attic", "hall"), ("attic", "cave", "hall")):
+        (tmp_path / f"{names[-2]}.yaml").touch()
+        assert catalogue.names == names
+    (tmp_path / "hall.yaml").unlink()
+    assert catalogue.names == ("attic", "cave")

@@ -350,3 +350,31 @@ def test_velocities_of_behaviours_count_along_the_joint() -> None:
     world = make_world(door(spec={"effort": 1e4}, behaviours=(turn,)))
     world.step(240)
     assert position(world) == pytest.approx(math.pi / 4, rel=0.01)
+
+
+def test_a_pose_is_that_of_its_joint_whoever_moves_it() -> None:
+    """After steps, between a step and a state that is restored, and after it was set."""
+    world = make_world(door(spec={"velocity": 1.0, "friction": 0.0}))
+    body = world.body(1)
+    assert isinstance(body, JointedBody)
+
+    def pose_is_right() -> bool:
+        angle = body.joint_state()[0]
+        return body.pose().rpy_deg[2] == pytest.approx(math.degrees(angle), abs=1e-9)
+
+    world.step(24)
+    assert pose_is_right()
+    first = body.joint_state()
+    state = world.client.saveState()
+    for _ in range(24):
+        world.client.stepSimulation()
+    assert body.joint_state()[0] > first[0] + 0.05
+    assert pose_is_right()
+    world.client.restoreState(state)
+    assert body.joint_state() == first
+    assert pose_is_right()
+    world.step(1)
+    assert pose_is_right()
+    body.set_joint(0.5, 0.0, 0.0)
+    assert body.joint_state()[0] == 0.5
+    assert pose_is_right()

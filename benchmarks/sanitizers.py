@@ -66,9 +66,7 @@ def _with_a_fault(sources: Path) -> Path:
     return sources
 
 
-def _driven(
-    folder: Path, sources: Path, sets: Collection[str]
-) -> subprocess.CompletedProcess[str]:
+def _driven(folder: Path, sources: Path, sets: Collection[str]) -> subprocess.CompletedProcess[str]:
     """Run the drivers against a build with sanitizers."""
     output = folder / native_compile.LIBRARY_NAME
     native_compile.compile_library(
