@@ -52,6 +52,9 @@ def add_parser(subparsers: Any) -> None:
     )
     _add_course(endless)
     endless.add_argument("--frames", type=int, required=True, metavar="N", help="how many")
+    endless.add_argument(
+        "--workers", type=int, default=1, metavar="N", help="processes here; default: 1"
+    )
     _add_output(endless)
     publish = actions.add_parser(
         "publish",
@@ -141,7 +144,7 @@ def _run_endless(args: argparse.Namespace) -> int:
         views=tuple(args.views) or streams.VIEWS,
     )
     with _progress(job.frames, quiet=args.quiet) as tell:
-        made = make_endless(job, args.output, on_frame=tell)
+        made = make_endless(job, args.output, workers=args.workers, on_frame=tell)
     print(f"{made}: frames {job.begin} to {job.begin + job.frames - 1} of {job.course.name}")
     return 0
 

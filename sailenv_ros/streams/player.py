@@ -32,6 +32,9 @@ __all__ = ["EYE", "Player"]
 EYE = "stream_eye"
 """Name of the stream's agent."""
 
+RENDERER = "native renderer on the CPU"
+"""Told of every frame: neither instruction set nor threads, which differ from worker to worker."""
+
 TICK = 50
 """Frames from one change of light and picture to the next."""
 
@@ -198,7 +201,7 @@ class Player:
         if self._info is None or self._info[0] is not frame.info:
             told = replace(
                 frame.info, epoch=1, revision=revision, sim_time_ns=told_ns, mode="lockstep",
-                scenes=(frame.info.scene,), seed=self._seed,
+                scenes=(frame.info.scene,), seed=self._seed, renderer=RENDERER,
             )  # fmt: skip
             self._info = frame.info, told
         stream = {

@@ -36,7 +36,14 @@ from sailenv_ros.types.light_choice import STEADY_LIGHTS, SteadyLight, checked_l
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import checked_views
 
-__all__ = ["PART_FRAMES", "StreamJob", "make_stream", "record_parts", "stream_pairs"]
+__all__ = [
+    "PART_FRAMES",
+    "StreamJob",
+    "make_stream",
+    "part_count",
+    "record_parts",
+    "stream_pairs",
+]
 
 PART_FRAMES = 500
 """Frames in each file of the bag: what is lost at most when it is interrupted."""
@@ -141,9 +148,16 @@ def make_stream(
     StreamFolder(Path(output), job.identity)
     content = scene_content(job.kind.scene, job.seed, job.light)
     folder = StreamFolder(Path(output), {**job.identity, **content})
-    return folder.filled(
-        job.frames, PART_FRAMES, lambda begin: _make_parts(job, folder, begin, on_frame), on_frame
-    )
+
+    def make(missing: list[int]) -> None:
+        # Nobody but `make_endless` leaves a gap.
+        begin = missing[0] * PART_FRAMES if missing else job.frames
+        if begin < job.frames:
+            _make_parts(job, folder, begin, on_frame)
+        else:
+            on_frame(job.frames)
+
+    return folder.filled(part_count(job.frames, PART_FRAMES), make)
 
 
 def stream_pairs(job: StreamJob, pairs: int) -> Iterator[tuple[int, Frame, Frame, SceneInfo]]:
@@ -199,6 +213,11 @@ def _make_parts(
         record_parts(folder, range(begin, job.frames), PART_FRAMES, record, on_frame)
 
 
+def part_count(frames: int, part_frames: int) -> int:
+    """Return the number of parts of so many frames."""
+    return -(-frames // part_frames)
+
+
 def record_parts(
     folder: StreamFolder,
     frames: range,
@@ -212,17 +231,17 @@ def record_parts(
     ----------
     folder : StreamFolder
     frames : range
-        Numbers of the frames that are missing; the first begins a part.
+        Numbers of frames that are missing; the first begins a part.
     part_frames : int
         Of each part but the last.
     record : callable
         ``record(recorder, number, begins)`` writes a frame; `begins` is true for the first of a
         part, which has to tell of the scene.
     on_frame : callable
-        Called with the number of frames that are done, after each.
+        Called with the number of the next frame, after each.
     """
     for first in frames[::part_frames]:
-        with folder.part() as draft, RecordingWriter(draft) as writer:
+        with folder.part(first // part_frames) as draft, RecordingWriter(draft) as writer:
             recorder = FrameRecorder(writer)
             for number in range(first, min(first + part_frames, frames.stop)):
                 record(recorder, number, number == first)

@@ -54,13 +54,11 @@ class StreamFolder:
         """True if all of it is there."""
         return (self.path / METADATA_FILE).is_file()
 
-    @property
-    def parts(self) -> int:
-        """Number of complete parts, counted from the first on."""
-        count = 0
-        while (self._growing / self._part(count)).is_file():
-            count += 1
-        return count
+    def missing(self, count: int) -> list[int]:
+        """Return the numbers of the parts that are not there, of so many."""
+        return [
+            number for number in range(count) if not (self._growing / self._part(number)).is_file()
+        ]
 
     @contextmanager
     def opened(self) -> Iterator[None]:
@@ -81,25 +79,15 @@ class StreamFolder:
                 self._check()
             yield
 
-    def filled(
-        self,
-        frames: int,
-        part_frames: int,
-        make_from: Callable[[int], None],
-        on_frame: Callable[[int], None],
-    ) -> Path:
+    def filled(self, parts: int, make: Callable[[list[int]], None]) -> Path:
         """Make what is missing, and return the folder.
 
         Parameters
         ----------
-        frames : int
+        parts : int
             Of the whole stream.
-        part_frames : int
-            Of each part but the last.
-        make_from : callable
-            Makes all parts from the one on that begins with a frame.
-        on_frame : callable
-            Told the number of frames if all are there already.
+        make : callable
+            Makes the parts of these numbers; told of none if all of it is there.
 
         Raises
         ------
@@ -107,23 +95,18 @@ class StreamFolder:
             As of `opened` and `finish`.
         """
         with self.opened():
-            if self.is_whole:
-                on_frame(frames)
-                return self.path
-            begin = self.parts * part_frames
-            if begin < frames:
-                make_from(begin)
-            return self.finish()
+            missing = [] if self.is_whole else self.missing(parts)
+            make(missing)
+            return self.path if self.is_whole else self.finish()
 
     @contextmanager
-    def part(self) -> Iterator[Path]:
-        """Yield the name of a bag to be written; its one file becomes the next part."""
-        name = self._part(self.parts)
+    def part(self, number: int) -> Iterator[Path]:
+        """Yield the name of a bag to be written; its one file becomes the part of that number."""
         with self._store.part() as part:
             draft = part.folder / "bag"
             yield draft
             with write_errors(draft):
-                os.replace(draft / f"{draft.name}_0.mcap", part.folder / name)
+                os.replace(draft / f"{draft.name}_0.mcap", part.folder / self._part(number))
                 shutil.rmtree(draft)
 
     def finish(self) -> Path:

@@ -257,8 +257,8 @@ def make_stream(folder: Path) -> None:
     with stream.opened():
         if stream.is_whole:
             return
-        for number in range(stream.parts, PARTS):
-            with stream.part() as draft, RecordingWriter(draft) as writer:
+        for number in stream.missing(PARTS):
+            with stream.part(number) as draft, RecordingWriter(draft) as writer:
                 writer.add_topic(topic)
                 writer.write("/a", (b"\0\1\0\0" + bytes([number]) * 30,), number + 1)
         stream.finish()

@@ -1,0 +1,149 @@
+"""Pieces of a work in several processes: numbers in, results out, in the order of their ends.
+
+A piece whose worker dies is made by another one, up to `ATTEMPTS` times. Errors of the work itself
+end it.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections import Counter, deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from multiprocessing import get_context
+from typing import Any, Generic, TypeVar
+
+from sailenv_ros.dataset.engine import ATTEMPTS, OnFrames, interleave_shards
+from sailenv_ros.errors import RecordingError
+from sailenv_ros.native.library import THREADS_VARIABLE
+from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.parent import end_at_once, end_with_parent
+
+__all__ = ["WorkerPool"]
+
+LOOK_INTERVAL_S = 0.2
+
+Made = TypeVar("Made")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkerPool(Generic[Made]):
+    """Processes of this machine, each with its share of the processors.
+
+    Attributes
+    ----------
+    workers : int
+    maker : callable
+        ``maker(*arguments, on_frame)`` returns a function from a piece's number to its result. A
+        function of a module: each worker calls it once. ``on_frame()`` counts a frame.
+    arguments : tuple
+        Sent to the workers.
+    piece : str
+        Word for a piece in errors.
+    """
+
+    workers: int
+    maker: Callable[..., Callable[[int], Made]]
+    arguments: tuple[Any, ...]
+    piece: str
+
+    def run(self, numbers: Sequence[int], on_frames: OnFrames) -> Iterator[Made]:
+        """Yield the result of each piece; neighbours are made by the same worker where it can be.
+
+        Raises
+        ------
+        RecordingError
+            If the worker of a piece was killed `ATTEMPTS` times.
+        """
+        context = get_context("spawn")
+        frames = context.Value("q", 0)
+        threads = max(1, (os.cpu_count() or 1) // self.workers)
+        arguments = (self.maker, self.arguments, frames, threads, os.getpid())
+        attempts: Counter[int] = Counter()
+        waiting = deque(interleave_shards(numbers, self.workers))
+        while waiting:
+            pool = ProcessPoolExecutor(
+                min(self.workers, len(waiting)), context, _begin_worker, arguments
+            )
+            running: dict[Future[Made], int] = {}
+            try:
+                yield from self._run(pool, waiting, running, frames, on_frames)
+                pool.shutdown()
+            except BrokenProcessPool:
+                # All that were running are tried again, by new workers.
+                for number in sorted(running.values(), reverse=True):
+                    attempts[number] += 1
+                    if attempts[number] >= ATTEMPTS:
+                        raise RecordingError(
+                            f"the worker of {self.piece} {number} was killed {ATTEMPTS} times; "
+                            "it may need more memory than there is: use fewer workers"
+                        ) from None
+                    waiting.appendleft(number)
+            finally:
+                _end(pool)
+
+    def _run(
+        self,
+        pool: ProcessPoolExecutor,
+        waiting: deque[int],
+        running: dict[Future[Made], int],
+        frames: Any,
+        on_frames: OnFrames,
+    ) -> Iterator[Made]:
+        while waiting or running:
+            # One more than there are workers, so that none of them waits for us.
+            while waiting and len(running) <= self.workers:
+                number = waiting.popleft()
+                try:
+                    running[pool.submit(_make, number)] = number
+                except BrokenProcessPool:
+                    waiting.appendleft(number)
+                    raise
+            done, _ = wait(running, LOOK_INTERVAL_S, FIRST_COMPLETED)
+            on_frames(frames.value)
+            for future in sorted(done, key=lambda one: running[one]):
+                made = future.result()
+                del running[future]
+                yield made
+
+
+_made_by: Callable[[int], Any] | None = None
+
+
+def _begin_worker(
+    maker: Callable[..., Callable[[int], Any]],
+    arguments: tuple[Any, ...],
+    frames: Any,
+    threads: int,
+    parent: int,
+) -> None:
+    """Set a worker's process up."""
+    global _made_by
+    if threading.current_thread() is threading.main_thread():
+        end_with_parent(parent)
+        # Ctrl-C goes to all of the terminal; the parent ends its workers.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.environ[THREADS_VARIABLE] = str(threads)
+    keep_freed_memory()
+
+    def count() -> None:
+        with frames.get_lock():
+            frames.value += 1
+
+    _made_by = maker(*arguments, count)
+
+
+def _make(number: int) -> Any:
+    assert _made_by is not None
+    return _made_by(number)
+
+
+def _end(pool: ProcessPoolExecutor) -> None:
+    """End workers that still run at once; what they have not finished is not there."""
+    processes = list((getattr(pool, "_processes", None) or {}).values())
+    pool.shutdown(wait=False, cancel_futures=True)
+    end_at_once(processes)
