@@ -64,7 +64,7 @@ class FrameMaker:
         self._renderer = renderer
         self._lockstep = lockstep
         self._amodal: AmodalRenderer | None = None
-        self._relighter = Relighter()
+        self._relighter = Relighter(scene.library.baked_scenes)
         self._made = 0
         self.watch_light()
 

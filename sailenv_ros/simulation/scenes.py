@@ -26,6 +26,7 @@ from sailenv_ros.behaviours import (
 )
 from sailenv_ros.behaviours.durations import lesson_errors
 from sailenv_ros.light.bake.settings import BAKE_VERSION
+from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
 from sailenv_ros.scene.entries import checked_lessons, checked_objects, checked_scene
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
 from sailenv_ros.scene.scene_catalogue import SceneCatalogue
@@ -76,6 +77,7 @@ class SceneLibrary:
     ----------
     own_folder : Path
         Scenes are saved into it.
+    baked_scenes : BakedSceneStore
     robots : RobotStore
     uploads : UploadedModels
     materials : SceneMaterials
@@ -98,6 +100,7 @@ class SceneLibrary:
         self._packs, self.robots = OpenPacks(), RobotStore()
         self._assets = AssetLibrary((*self._packs.sources(), self.robots))
         self._light_cache = LightCache(wanted=baked_light, drafts=drafts, required=require_light)
+        self.baked_scenes = BakedSceneStore()
         self._generated = GeneratedScenes(self._assets)
         self.uploads = UploadedModels(self._assets)
         self._files: dict[str, Path] = {}

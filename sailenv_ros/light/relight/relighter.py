@@ -14,6 +14,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
 from sailenv_ros.light.relight.change_follower import ChangeFollower
 from sailenv_ros.light.relight.object_lights import ObjectLights, can_be_lit
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
@@ -55,6 +56,11 @@ class _Relit:
 class Relighter:
     """Follows one simulation; used by one thread.
 
+    Parameters
+    ----------
+    scenes : BakedSceneStore or None
+        That outlives this; None for its own.
+
     Attributes
     ----------
     beforehand : bool
@@ -62,7 +68,8 @@ class Relighter:
         everything ready; False when something moves first, if anything does. Light is the same.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, scenes: BakedSceneStore | None = None) -> None:
+        self._scenes = BakedSceneStore() if scenes is None else scenes
         self.beforehand = True
         self._pool: ThreadPoolExecutor | None = None
         self._refining: tuple[_Key, Future[BakedLight]] | None = None
@@ -136,7 +143,7 @@ class Relighter:
             if self.beforehand and soon and self._scene is None and self._preparing is None:
                 # Beside the frames, so that the first move finds everything ready.
                 self._preparing = self._background().submit(
-                    _ready_scene, self._original, snapshot, self._objects
+                    _ready_scene, self._scenes, self._original, snapshot, self._objects
                 )
             self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
             self._object_light = self._light_on_objects(snapshot, lockstep=lockstep)
@@ -274,7 +281,7 @@ class Relighter:
         if self._scene is None:
             assert self._original is not None
             if self._preparing is None:
-                self._scene = _scene_of(self._original, thread_count())
+                self._scene = self._scenes.scene_of(self._original, thread_count())
                 self._shadows = ShownShadows(self._scene, self._objects.points)
             else:
                 self._scene, self._shadows = self._preparing.result()
@@ -282,16 +289,11 @@ class Relighter:
         return self._scene
 
 
-def _scene_of(contents: SceneContents, threads: int) -> BakedScene:
-    assert contents.baked is not None
-    return BakedScene(contents.baked, contents, threads)
-
-
 def _ready_scene(
-    contents: SceneContents, snapshot: WorldSnapshot, objects: ObjectLights
+    scenes: BakedSceneStore, contents: SceneContents, snapshot: WorldSnapshot, objects: ObjectLights
 ) -> tuple[BakedScene, ShownShadows]:
     """Make a scene ready, and light and shadows of what can move, which no frame waits for."""
-    scene = _scene_of(contents, 1)
+    scene = scenes.scene_of(contents, 1)
     objects.update(snapshot, scene, (), threads=1)
     shadows = ShownShadows(scene, objects.points)
     rest = [thing for thing in objects.things if not thing.moves]

@@ -1,0 +1,70 @@
+"""The last scene that was made ready for relighting, for who shows it again.
+
+A data set's shards, environments of one room and resets show the same room with the same light
+many times; to lay out its texels takes most of a second. Knows no change.
+"""
+
+from __future__ import annotations
+
+import copy
+import threading
+from typing import TypeAlias
+
+import numpy as np
+
+from sailenv_ros.light.bake.sky_picture import sky_picture
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.types.model import Model
+from sailenv_ros.types.snapshot import SceneContents
+
+__all__ = ["BakedSceneStore"]
+
+_Drawn: TypeAlias = tuple[int, Model, tuple[float, ...], tuple[str, ...]]
+
+
+class BakedSceneStore:
+    """Keeps one scene; any thread may ask."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._kept: tuple[tuple[_Drawn, ...], BakedScene] | None = None
+
+    def scene_of(self, contents: SceneContents, threads: int) -> BakedScene:
+        """Return a scene whose light is baked; made, or the last one if that is the same.
+
+        Parameters
+        ----------
+        contents : SceneContents
+            With baked light.
+        threads : int
+            The scene does not depend on it.
+        """
+        baked = contents.baked
+        assert baked is not None
+        drawn = tuple(
+            (one.instance.id, one.model, one.scale, one.lit_by)
+            for one in contents.instances
+            if one.instance.id in baked.charts
+        )
+        with self._lock:
+            kept = self._kept
+        if kept is not None and _same(kept[0], drawn):
+            before = kept[1].baked
+            if before.layers is baked.layers and before.charts is baked.charts:
+                # The same but for what is seen where nothing is hit.
+                scene = copy.copy(kept[1])
+                scene.baked = baked
+                scene.sky = np.ascontiguousarray(sky_picture(contents.environment), np.float32)
+                return scene
+        scene = BakedScene(baked, contents, threads)
+        with self._lock:
+            self._kept = drawn, scene
+        return scene
+
+
+def _same(first: tuple[_Drawn, ...], second: tuple[_Drawn, ...]) -> bool:
+    """Return whether the same models stand for the same instances; models by identity."""
+    return len(first) == len(second) and all(
+        a[1] is b[1] and (a[0], *a[2:]) == (b[0], *b[2:])
+        for a, b in zip(first, second, strict=True)
+    )
