@@ -41,25 +41,42 @@ class BakedSceneStore:
         """
         baked = contents.baked
         assert baked is not None
-        drawn = tuple(
-            (one.instance.id, one.model, one.scale, one.lit_by)
-            for one in contents.instances
-            if one.instance.id in baked.charts
-        )
-        with self._lock:
-            kept = self._kept
-        if kept is not None and _same(kept[0], drawn):
-            before = kept[1].baked
-            if before.layers is baked.layers and before.charts is baked.charts:
-                # The same but for what is seen where nothing is hit.
-                scene = copy.copy(kept[1])
-                scene.baked = baked
-                scene.sky = np.ascontiguousarray(sky_picture(contents.environment), np.float32)
-                return scene
+        kept = self._known(contents)
+        if kept is not None:
+            # The same but for what is seen where nothing is hit.
+            scene = copy.copy(kept)
+            scene.baked = baked
+            scene.sky = np.ascontiguousarray(sky_picture(contents.environment), np.float32)
+            return scene
         scene = BakedScene(baked, contents, threads)
         with self._lock:
-            self._kept = drawn, scene
+            self._kept = _drawn(contents), scene
         return scene
+
+    def forget_others(self, contents: SceneContents) -> None:
+        """Free the scene that is kept, with all its models, if another one is shown now."""
+        if self._known(contents) is None:
+            with self._lock:
+                self._kept = None
+
+    def _known(self, contents: SceneContents) -> BakedScene | None:
+        """Return the scene that is kept, if it is that of these contents."""
+        with self._lock:
+            kept, baked = self._kept, contents.baked
+        if kept is None or baked is None:
+            return None
+        before = kept[1].baked
+        same = before.layers is baked.layers and before.charts is baked.charts
+        return kept[1] if same and _same(kept[0], _drawn(contents)) else None
+
+
+def _drawn(contents: SceneContents) -> tuple[_Drawn, ...]:
+    charts = {} if contents.baked is None else contents.baked.charts
+    return tuple(
+        (one.instance.id, one.model, one.scale, one.lit_by)
+        for one in contents.instances
+        if one.instance.id in charts
+    )
 
 
 def _same(first: tuple[_Drawn, ...], second: tuple[_Drawn, ...]) -> bool:

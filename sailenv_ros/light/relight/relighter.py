@@ -104,6 +104,7 @@ class Relighter:
             self._original = contents
         else:
             return
+        self._scenes.forget_others(contents)
         self._scene, self._light, self._seen, self._refining = None, None, None, None
         self._changes, self._painted = [], {}
         self._follower = None if self._original is None else ChangeFollower(self._original)

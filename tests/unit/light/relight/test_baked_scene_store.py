@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
+from sailenv_ros.light.relight.relighter import Relighter
 from tests.support.bake_scenes import ground
 from tests.support.movable_boxes import FLOOR, LAMP, WHITE_SKY, room, scene_of
 from tests.support.tiny_scenes import Thing, snapshot_of
@@ -48,3 +51,14 @@ def test_another_light_or_another_look_is_another_scene() -> None:
     scene = store.scene_of(contents, 1)
     assert_same(scene, scene_of(replace(other, contents=contents)))
     assert scene.patches.albedo.max() > 0.5
+
+
+def test_a_scene_that_is_shown_no_more_is_freed() -> None:
+    """With its models, as soon as another one is shown, though that needs no relighting."""
+    store, snapshot = BakedSceneStore(), room()
+    kept = weakref.ref(store.scene_of(snapshot.contents, 1))
+    Relighter(store).watch(snapshot)
+    assert kept() is not None
+    Relighter(store).watch(snapshot_of([Thing(FLOOR)]))
+    gc.collect()
+    assert kept() is None
