@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from sailenv_ros.cli.arguments import add_allow_modules, add_any_light
+from sailenv_ros.dataset.live_capture import LiveCapture
 from sailenv_ros.errors import SimulationClosed
 from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
 from sailenv_ros.gateway.protocol_commands import Protocol
@@ -155,7 +156,11 @@ def _viewer(simulation: Simulation, args: argparse.Namespace) -> Iterator[Viewer
         yield None
         return
     with ViewerServer(
-        simulation, host=args.viewer_host, port=args.viewer_port, control=args.viewer_control
+        simulation,
+        host=args.viewer_host,
+        port=args.viewer_port,
+        control=args.viewer_control,
+        data_sets=LiveCapture(),
     ) as viewer:
         yield viewer
 

@@ -29,6 +29,7 @@ from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.types.views import FIVE_VIEWS
 from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.commands import COMMANDS
+from sailenv_ros.viewer.data_set_captures import DataSetCaptures
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.edit_history import EditHistory
 from sailenv_ros.viewer.encoding import packed, sheet_png, view_png
@@ -71,6 +72,7 @@ class Client:
     touch : callable
         Called after each command that may have changed what is seen.
     history : EditHistory
+    captures : DataSetCaptures
     """
 
     def __init__(
@@ -86,8 +88,10 @@ class Client:
         greeting: HelloMessage,
         touch: Callable[[], None],
         history: EditHistory,
+        captures: DataSetCaptures,
     ) -> None:
         self.history = history
+        self.captures = captures
         self.picture_pieces = bytearray()
         self.debug_agent = debug_agent
         self._socket = socket
@@ -293,7 +297,7 @@ class Client:
         """Return one view as a PNG, without loss."""
         seen = self.frame(frame)
         data = await asyncio.to_thread(
-            view_png, seen, view, categories=self.info.categories, depth_range_m=self._range(seen)
+            view_png, seen, view, categories=self.info.categories, depth_range_m=seen.depth_range_m
         )
         return SentFile(f"{seen.scene}_{seen.agent}_{seen.sequence:06d}_{view}.png", data)
 
@@ -302,15 +306,11 @@ class Client:
         """Return the five views on one sheet, rendered together at the next instant."""
         last = self.frame(None)
         frame: Frame = await self.run(Operations.capture, FIVE_VIEWS, agent=last.agent)
-        categories, range_m = self.info.categories, self._range(frame)
+        categories, range_m = self.info.categories, frame.depth_range_m
         data = await asyncio.to_thread(
             sheet_png, frame, FIVE_VIEWS, categories=categories, depth_range_m=range_m
         )
         return SentFile(f"{frame.scene}_{frame.agent}_{frame.sequence:06d}_views.png", data)
-
-    def _range(self, frame: Frame) -> float:
-        ranges = (spec.depth_range_m for spec in self.info.agents if spec.name == frame.agent)
-        return next(ranges, 10.0)
 
     # -- sending ---------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.viewer.data_set_captures import DataSetCaptures
 from sailenv_ros.viewer.debug_agent import DebugAgent
 from sailenv_ros.viewer.edit_history import Conversation, EditHistory
 from sailenv_ros.viewer.request_arguments import Arguments
@@ -17,6 +18,7 @@ __all__ = ["Command", "CommandContext", "CommandTable", "Run"]
 class CommandContext(Conversation, Protocol):
     """The conversation that a command came in."""
 
+    captures: DataSetCaptures
     debug_agent: DebugAgent
     history: EditHistory
     picture_pieces: bytearray

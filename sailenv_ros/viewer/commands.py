@@ -20,6 +20,7 @@ from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import LightAttributes, LightType
 from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.viewer.capture_commands import CAPTURE_COMMANDS
 from sailenv_ros.viewer.command_context import Command, CommandContext, CommandTable
 from sailenv_ros.viewer.frame_overlay import overlay_of
 from sailenv_ros.viewer.messages import (
@@ -43,7 +44,9 @@ from sailenv_ros.viewer.served_commands import served
 
 __all__ = ["COMMANDS"]
 
-_commands = CommandTable({**OPERATION_COMMANDS, **ROOM_COMMANDS, **ROBOT_COMMANDS})
+_commands = CommandTable(
+    {**OPERATION_COMMANDS, **ROOM_COMMANDS, **ROBOT_COMMANDS, **CAPTURE_COMMANDS}
+)
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(_commands)
 """Every command by its name."""

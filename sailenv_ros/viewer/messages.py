@@ -2,7 +2,7 @@
 
 Declared once for both sides: mypy checks those who make them, and `scripts/page_messages.py` writes
 them as TypeScript for the page. What a page may ask for is declared by the signatures of the
-commands; the scene is in `scene_messages`.
+commands; the scene is in `scene_messages`, the room in `room_messages`.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from sailenv_ros.viewer.scene_messages import LensValues, PersonLines, PoseValue
 __all__ = [
     "BehaviourInfo",
     "BehaviourParameter",
+    "CapturedDataSet",
     "FileHead",
-    "FloorPlanValues",
     "FrameForAll",
     "FrameForClient",
     "FrameHead",
@@ -31,13 +31,8 @@ __all__ = [
     "PictureSetting",
     "PixelValues",
     "PlacedObject",
-    "PlannedObject",
-    "PlannedOpening",
     "RefusedMessage",
     "ReplyMessage",
-    "RoomKind",
-    "RoomMade",
-    "RoomSet",
     "SentFile",
     "ShownMessage",
     "StatsMessage",
@@ -100,6 +95,7 @@ class HelloMessage(TypedDict):
     picture_settings: list[PictureSetting]
     materials: list[str]
     skies: list[str]
+    data_sets: list[str]
 
 
 # -- frames and news --------------------------------------------------------------------------
@@ -161,6 +157,7 @@ class StatsMessage(TypedDict):
     skipped_frames: int
     viewers: int
     building: str
+    capturing: str
     undo: str
     redo: str
 
@@ -287,48 +284,13 @@ class UndoneStep(TypedDict):
     id: int
 
 
-class PlannedOpening(TypedDict):
-    """A window or a door in a floor plan: middle along its wall, and width [m]."""
+class CapturedDataSet(TypedDict):
+    """A data set that was captured: the key of its address, ``captured/KEY``, and what it has."""
 
-    type: str
-    wall: str
-    at: float
-    width: float
-
-
-class PlannedObject(TypedDict):
-    """An object in a floor plan: the corners of its box seen from above [m]."""
-
-    id: int
+    key: str
     name: str
-    corners: list[tuple[float, float]]
-
-
-class FloorPlanValues(TypedDict):
-    """The room and what stands in it, seen from above [m]; the size is null for no room."""
-
-    size: Vector3 | None
-    openings: list[PlannedOpening]
-    objects: list[PlannedObject]
-
-
-class RoomSet(TypedDict):
-    """The names of the objects whose places a new room has taken."""
-
-    replaced: list[str]
-
-
-class RoomKind(TypedDict):
-    """A kind of room that can be generated."""
-
-    kind: str
-    title: str
-
-
-class RoomMade(TypedDict):
-    """The name by which a generated room is begun again."""
-
-    scene: str
+    frames: int
+    bytes: int
 
 
 class SentFile:

@@ -12,8 +12,8 @@ from sailenv_ros.simulation.operations.operations import Operations
 from sailenv_ros.simulation.operations.rooms import RoomOperations
 from sailenv_ros.types.validation import checked_integer
 from sailenv_ros.viewer.command_context import CommandContext, CommandTable
-from sailenv_ros.viewer.messages import FloorPlanValues, RoomKind, RoomMade, RoomSet
 from sailenv_ros.viewer.recorded_commands import take_down
+from sailenv_ros.viewer.room_messages import FloorPlanValues, RoomKind, RoomMade, RoomSet
 from sailenv_ros.viewer.scene_messages import Vector3
 from sailenv_ros.viewer.served_commands import served
 

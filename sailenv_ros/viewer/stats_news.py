@@ -32,6 +32,8 @@ class StatsNews:
         Gives that number.
     time_stands : callable
         Called at each report while simulated time stands still.
+    capturing : callable
+        Gives how far a data set is that is captured, in words; empty for none.
     """
 
     def __init__(
@@ -42,12 +44,14 @@ class StatsNews:
         tell: Callable[[StatsMessage], None],
         viewers: Callable[[], int],
         time_stands: Callable[[], None],
+        capturing: Callable[[], str],
     ) -> None:
         self._simulation = simulation
         self._history = history
         self._tell = tell
         self._viewers = viewers
         self._time_stands = time_stands
+        self._capturing = capturing
         self._real_time_factor = 0.0
         self._told = ("", "")
 
@@ -79,6 +83,7 @@ class StatsNews:
                 "skipped_frames": self._simulation.skipped_frames,
                 "viewers": self._viewers(),
                 "building": self._simulation.background_task,
+                "capturing": self._capturing(),
                 "undo": self._told[0],
                 "redo": self._told[1],
             }

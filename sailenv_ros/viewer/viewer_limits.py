@@ -35,6 +35,10 @@ class ViewerLimits:
         A client that answers no ping for so long is gone [s].
     request_s : float
         Deadline of a request [s]; loading a scene takes many.
+    capture_s : float
+        A data set that is captured ends after so long with what was seen until then [s].
+    capture_bytes : int
+        Most bytes of a data set, which is packed beside itself.
     """
 
     connections: int = 256
@@ -47,3 +51,5 @@ class ViewerLimits:
     send_s: float = 20.0
     silent_s: float = SILENT_S
     request_s: float = 120.0
+    capture_s: float = 600.0
+    capture_bytes: int = 1_000_000_000

@@ -24,6 +24,7 @@ from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.viewer.access_control import SECURITY_HEADERS, AccessControl, is_loopback
 from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.client import Client
+from sailenv_ros.viewer.data_set_captures import DataSetCaptures, DataSetMaker
 from sailenv_ros.viewer.debug_agent import NAME, DebugAgent
 from sailenv_ros.viewer.edit_history import EditHistory
 from sailenv_ros.viewer.encoding import views_to_json
@@ -95,6 +96,8 @@ class ViewerServer(LoopServer):
         Whether those who come from elsewhere may change anything; on this machine alone, everybody
         may.
     limits : ViewerLimits
+    data_sets : DataSetMaker or None
+        Writes the data sets that the page offers to capture; None offers none.
 
     Raises
     ------
@@ -110,6 +113,7 @@ class ViewerServer(LoopServer):
         port: int = DEFAULT_PORT,
         control: bool = False,
         limits: ViewerLimits | None = None,
+        data_sets: DataSetMaker | None = None,
     ) -> None:
         super().__init__("viewer", host, port)
         self._simulation = simulation
@@ -126,12 +130,14 @@ class ViewerServer(LoopServer):
         self._touched = 0
         self._objects_told_s = 0.0
         self._history = EditHistory()
+        self._captures = DataSetCaptures(simulation, self._access, self._limits, data_sets)
         self._stats = StatsNews(
             simulation,
             self._history,
             tell=self._announce_stats,
             viewers=lambda: len(self._clients),
             time_stands=self._announce_objects,  # no step tells of what programs move
+            capturing=lambda: self._captures.progress,
         )
         self._feeds = AgentFeeds(simulation, self._debug_agent, lambda: self._touched)
         self._end_news = contextlib.ExitStack()
@@ -164,6 +170,7 @@ class ViewerServer(LoopServer):
     def _release(self) -> None:
         self._end_news.close()
         self._feeds.close()
+        self._captures.close()
 
     def _scene_changed(self, _: SceneInfo) -> None:
         """Have everybody told; called by the simulation's thread."""
@@ -187,6 +194,7 @@ class ViewerServer(LoopServer):
         app.router.add_get("/thumbnail/{asset}", self._thumbnail)
         exports = ExportFiles(self._simulation, self._access, self._limits.request_s)
         app.router.add_get("/export/{format}", exports.answer)
+        app.router.add_get("/captured/{key}", self._captures.answer)
         app.router.add_get("/{name}", self._page_file)
         runner = web.AppRunner(
             app,
@@ -204,6 +212,7 @@ class ViewerServer(LoopServer):
             listening(server.sockets[0].getsockname()[1])
             stats = asyncio.create_task(self._stats.run())
             await self._stop.wait()
+            self._captures.give_up()
             stats.cancel()
             server.close()
             await asyncio.gather(*(client.close() for client in tuple(self._clients)))
@@ -288,9 +297,11 @@ class ViewerServer(LoopServer):
                 "picture_settings": picture_settings_to_json(),
                 "materials": materials_to_json(),
                 "skies": await asyncio.to_thread(skies_to_json),
+                "data_sets": self._captures.formats,
             },
             touch=self._touch,
             history=self._history,
+            captures=self._captures,
         )
         self._clients.add(client)
         try:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import TypeVar
 
+from sailenv_ros.dataset.live_capture import LiveCapture
 from sailenv_ros.errors import AddressInUse
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.ros.nodes.lifecycle import StopRequest, finished_within
@@ -61,6 +62,7 @@ class Hosted:
                 host=parameters.viewer_host,
                 port=port,
                 control=parameters.viewer_control,
+                data_sets=LiveCapture(),
             ),
         )
         steps = [*first, *_furnishing(simulation, parameters)]

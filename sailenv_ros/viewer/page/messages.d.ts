@@ -17,6 +17,7 @@ export interface HelloMessage {
   picture_settings: PictureSetting[];
   materials: string[];
   skies: string[];
+  data_sets: string[];
 }
 
 /** A view that can be shown; `shown` if it is at first. */
@@ -165,6 +166,7 @@ export interface StatsMessage {
   skipped_frames: number;
   viewers: number;
   building: string;
+  capturing: string;
   undo: string;
   redo: string;
 }
@@ -289,6 +291,14 @@ export interface LightAttributes {
   exponent?: number;
   width_m?: number;
   height_m?: number;
+}
+
+/** A data set that was captured: the key of its address, ``captured/KEY``, and what it has. */
+export interface CapturedDataSet {
+  key: string;
+  name: string;
+  frames: number;
+  bytes: number;
 }
 
 /** Keys of an object that can be changed; None takes the asset's own. It is moved otherwise. */
@@ -533,6 +543,7 @@ export interface Commands {
   add_light: { values: { light_type: "directional" | "point" | "spot" | "area"; light_name?: string | null; attributes?: LightAttributes | null }; result: string };
   add_robot: { values: { file: string; u: number; v: number; frame?: number | null; mount?: string }; result: number };
   add_waypoint: { values: { mover: string }; result: PoseValues };
+  capture_data_set: { values: { format_name: string; agent: string; frames: number; rate_hz: number }; result: CapturedDataSet };
   change_object: { values: { obj: number | string; changes?: ObjectChanges }; result: ObjectValues };
   change_scene: { values: { scene: string }; result: null };
   despawn_object: { values: { obj: number | string }; result: null };
@@ -573,6 +584,7 @@ export interface Commands {
   spawn: { values: { asset: string; u: number; v: number; frame?: number | null }; result: PlacedObject };
   start_lessons: { values: { lessons?: Record<string, any> | string | null }; result: LessonState };
   step: { values: { count?: number }; result: number };
+  stop_capture: { values: {}; result: null };
   stop_lessons: { values: {}; result: null };
   turn_mover: { values: { pitch_rad?: number; yaw_rad?: number; mover?: string }; result: null };
   undo: { values: {}; result: UndoneStep };

@@ -1,6 +1,7 @@
 // @ts-check
 // The scene as a whole: save it, begin it with another seed, how fast time runs, who is there.
 
+import { CaptureSection } from "./capture_section.js";
 import { button, download, el, fixed, line, options, pairs, put, say, section, toast } from "./dom.js";
 
 /** @import {Actions} from "./actions.js" */
@@ -110,6 +111,7 @@ export class ScenePanel {
           button("Download", () => this.#export(), { kind: "export", title: "The scene as it is now" })),
         this.#exported,
       ),
+      new CaptureSection(store, actions).root,
       section(
         "Time and chance",
         line("real-time factor", this.#factor),
