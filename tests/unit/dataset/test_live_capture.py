@@ -67,7 +67,7 @@ def test_a_capture_ends_where_time_stands(
     monkeypatch.setattr(live_capture, "LOOK_S", 0.05)
     try:
         count = LiveCapture().write(
-            running, tmp_path, "png", agent="eye", frames=3, rate_hz=20.0,
+            running, tmp_path, "png", agent="eye", frames=3, rate_hz=0.1,
             stopped=threading.Event(), on_frame=lambda _: running.pause(),
         )  # fmt: skip
     finally:
