@@ -1,14 +1,17 @@
 """Frames → videos that control a video model, with a caption, as NVIDIA's Cosmos Transfer has them.
 
 ``videos/``, ``metas/`` (captions), and a folder for each control: ``depth``, ``seg``, ``edge`` and
-``vis`` (blurred). A clip is what has one epoch.
+``vis`` (blurred). ``seg/`` has masks besides, for training; ``specs/`` what its inference reads,
+from within the folder. A clip is what has one epoch.
 """
 
 from __future__ import annotations
 
+import json
+import pickle
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import cv2
 import numpy as np
@@ -17,6 +20,7 @@ from numpy.typing import NDArray
 from sailenv_ros.dataset.formats.data_files import write_bytes
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.video_file import VideoFile
+from sailenv_ros.dataset.formats.video_masks import VideoMasks
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.language import caption, scene_graph
 from sailenv_ros.types.labels import colour_instances
@@ -36,7 +40,10 @@ BLUR_SHARE = 0.02
 
 
 class CosmosExport(DatasetFormat):
-    """``0000.mp4`` in ``videos`` and the controls' folders, and ``metas/0000.txt``."""
+    """``0000.mp4`` in ``videos`` and the controls' folders, and what is told of it.
+
+    ``metas/0000.txt``, ``seg/0000.pickle``, ``specs/0000.json``.
+    """
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "instance")
     is_sequence: ClassVar[bool] = True
@@ -47,6 +54,8 @@ class CosmosExport(DatasetFormat):
         self._clip = -1
         self._epoch: int | None = None
         self._files: dict[str, VideoFile] = {}
+        self._caption, self._masks = "", VideoMasks()
+        self._phrases: dict[int, str] = {}
 
     def add(self, sample: Sample) -> WriteResult:
         """Add a frame to each video; the first of a clip is described."""
@@ -59,9 +68,12 @@ class CosmosExport(DatasetFormat):
                 for name in ("videos", *_CONTROLS)
             }
             place = _place_of(sample.scene_info("cosmos").scene)
-            text = caption(scene_graph(frame), place=place).text
-            write_bytes(self.folder / "metas" / f"{self._clip:04d}.txt", f"{text}\n".encode())
+            self._caption = caption(scene_graph(frame), place=place).text
+            self._masks = VideoMasks()
             written["clips"] = 1
+        for one in sample.scene_info("cosmos").instances:
+            self._phrases[one.id] = one.category.replace("_", " ")
+        self._masks.add(_even(frame["instance"]))
         self._files["videos"].add(_even(frame["rgb"]), frame.stamp_ns)
         for name, control in _CONTROLS.items():
             self._files[name].add(_even(control(frame)), frame.stamp_ns)
@@ -72,9 +84,24 @@ class CosmosExport(DatasetFormat):
         self._end()
 
     def _end(self) -> None:
+        if not self._files:
+            return
         for file in self._files.values():
             file.finish()
         self._files = {}
+        name = f"{self._clip:04d}"
+        write_bytes(self.folder / "metas" / f"{name}.txt", f"{self._caption}\n".encode())
+        masks = self._masks.entries(self._phrases)
+        write_bytes(self.folder / "seg" / f"{name}.pickle", pickle.dumps(masks))
+        controls = {
+            control: {
+                "input_control": f"{control}/{name}.mp4",
+                "control_weight": 1 / len(_CONTROLS),
+            }
+            for control in _CONTROLS
+        }
+        told = {"prompt": self._caption, "input_video_path": f"videos/{name}.mp4", **controls}
+        write_bytes(self.folder / "specs" / f"{name}.json", json.dumps(told, indent=1).encode())
 
 
 def _depth(frame: Frame) -> Picture:
@@ -110,7 +137,7 @@ def _grey(values: NDArray[np.uint8]) -> Picture:
     return np.repeat(values[..., None], 3, axis=2)
 
 
-def _even(picture: Picture) -> Picture:
+def _even(picture: NDArray[Any]) -> NDArray[Any]:
     """Return a picture without the last row or column where their number is odd: videos need it."""
     height, width = (length // 2 * 2 for length in picture.shape[:2])
     return picture[:height, :width]

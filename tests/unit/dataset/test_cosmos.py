@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -89,3 +91,47 @@ def test_controls_show_the_frame(made: tuple[Path, list[list[Frame]]]) -> None:
     ids = frame["instance"][:, :96]
     inside = ids == np.argmax(np.bincount(ids.ravel()))
     assert segments[inside].std(axis=0).max() < 30.0
+
+
+def test_masks_of_a_clip_are_its_ids(made: tuple[Path, list[list[Frame]]]) -> None:
+    """One column of all pixels for each object, as the COCO API decodes it."""
+    folder, clips = made
+    ids = np.stack([frame["instance"][:, :96] for frame in clips[1]])
+    info = clips[1][0].info
+    assert info is not None
+    names = {one.id: one.category.replace("_", " ") for one in info.instances}
+    entries = pickle.loads((folder / "seg" / "0001.pickle").read_bytes())
+    seen = sorted({*np.unique(ids).tolist()} - {0})
+    assert [entry["phrase"] for entry in entries] == [names[id_] for id_ in seen]
+    for id_, entry in zip(seen, entries, strict=True):
+        mask = entry["segmentation_mask_rle"]
+        assert mask["mask_shape"] == [3, 64, 96]
+        assert mask["data"]["size"] == [ids.size, 1]
+        lengths = _lengths(mask["data"]["counts"].decode())
+        decoded = np.repeat(np.arange(len(lengths)) % 2, lengths).reshape(ids.shape)
+        assert (decoded == (ids == id_)).all()
+
+
+def _lengths(text: str) -> list[int]:
+    """Return run lengths, as rleFrString of the COCO API does."""
+    lengths: list[int] = []
+    value = shift = 0
+    for letter in text:
+        bits = ord(letter) - 48
+        value |= (bits & 0x1F) << shift
+        shift += 5
+        if not bits & 0x20:
+            value -= (1 << shift) if bits & 0x10 else 0
+            lengths.append(value + (lengths[-2] if len(lengths) > 2 else 0))
+            value = shift = 0
+    return lengths
+
+
+def test_inference_is_told_of_each_clip(made: tuple[Path, list[list[Frame]]]) -> None:
+    folder, _ = made
+    for clip in ("0000", "0001"):
+        spec = json.loads((folder / "specs" / f"{clip}.json").read_text())
+        assert spec["prompt"] == (folder / "metas" / f"{clip}.txt").read_text().strip()
+        files = [spec["input_video_path"]]
+        files += [spec[name]["input_control"] for name in ("depth", "seg", "edge", "vis")]
+        assert all((folder / file).is_file() for file in files)
