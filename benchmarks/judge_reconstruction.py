@@ -2,6 +2,7 @@
 
     python benchmarks/judge_reconstruction.py write FOLDER
     python benchmarks/judge_reconstruction.py judge FOLDER
+    python benchmarks/judge_reconstruction.py tracks FOLDER
     python benchmarks/judge_reconstruction.py rays FOLDER
 
 `write` exports forty pictures of `room_01` from an ellipse within it, by each of three lenses. Then
@@ -9,7 +10,8 @@
 length of their tracks, the greatest distance between an observation and COLMAP's projection of its
 point [px]; and for points that COLMAP triangulates of SIFT features with our poses and lens: how
 many, their mean reprojection error [px], the median distance to the nearest of our points [mm].
-`rays`, where nerfstudio is, reads the same by its data parser and prints by how much, at most, its
+`tracks` gives COLMAP our observations in place of its features, and prints how far what it
+triangulates of them is from our points [mm]. `rays`, where nerfstudio is, reads the same by its data parser and prints by how much, at most, its
 rays miss the points that they should meet [px].
 """
 
@@ -120,6 +122,68 @@ def _triangulated(pycolmap: Any, folder: Path, model: Any) -> Any:
     )
 
 
+def tracks(folder: Path) -> None:
+    """Print a row for each model: points that COLMAP triangulates of our observations."""
+    import pycolmap
+
+    pycolmap.logging.minloglevel = 3
+    print("|lens|points|triangulated|off [mm]|median|99 %|most|error [px]|\n" + "|---" * 8 + "|")
+    for own in sorted(path.parent for path in folder.glob("*/colmap/sparse")):
+        model = pycolmap.Reconstruction(own / "sparse" / "0")
+        ours = {
+            (id_, number): model.points3D[point.point3D_id]
+            for id_, image in model.images.items()
+            for number, point in enumerate(image.points2D)
+            if point.has_point3D()
+        }
+        base, found = own / "tracks.db", own / "of_tracks"
+        base.unlink(missing_ok=True)
+        found.mkdir(exist_ok=True)
+        _keep_tracks(pycolmap, base, model)
+        made = pycolmap.triangulate_points(
+            pycolmap.Reconstruction(own / "sparse" / "0"), base, own / "images", found
+        )
+        off = np.array(
+            [
+                1e3 * np.linalg.norm(point.xyz - ours[one.image_id, one.point2D_idx].xyz)
+                for point in made.points3D.values()
+                for one in point.track.elements[:1]
+            ]
+        )
+        print(
+            f"|{own.parent.name}|{len(model.points3D)}|{len(off)}|{off.mean():.3f}"
+            f"|{np.median(off):.3f}|{np.percentile(off, 99):.3f}|{off.max():.3f}"
+            f"|{made.compute_mean_reprojection_error():.1e}|"
+        )
+
+
+def _keep_tracks(pycolmap: Any, file: Path, model: Any) -> None:
+    """Write a data base of our observations, and which of two pictures see the same point."""
+    seen = {}
+    with pycolmap.Database.open(file) as base:
+        for camera in model.cameras.values():
+            base.write_camera(camera, use_camera_id=True)
+        for rig in model.rigs.values():
+            base.write_rig(rig, use_rig_id=True)
+        for frame in model.frames.values():
+            base.write_frame(frame, use_frame_id=True)
+        for id_, image in sorted(model.images.items()):
+            base.write_image(image, use_image_id=True)
+            base.write_keypoints(id_, np.array([one.xy for one in image.points2D], np.float32))
+            seen[id_] = {one.point3D_id: n for n, one in enumerate(image.points2D)}
+        for first in seen:
+            for second in seen:
+                both = sorted(seen[first].keys() & seen[second].keys())
+                if first < second and both:
+                    geometry = pycolmap.TwoViewGeometry()
+                    geometry.config = pycolmap.TwoViewGeometryConfiguration.CALIBRATED
+                    geometry.inlier_matches = np.array(
+                        [[seen[first][one], seen[second][one]] for one in both], np.uint32
+                    )
+                    base.write_matches(first, second, geometry.inlier_matches)
+                    base.write_two_view_geometry(first, second, geometry)
+
+
 def rays(folder: Path) -> None:
     """Print a row for each model, of every eighth picture."""
     import torch
@@ -158,4 +222,4 @@ def rays(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    {"write": write, "judge": judge, "rays": rays}[sys.argv[1]](Path(sys.argv[2]))
+    {"write": write, "judge": judge, "tracks": tracks, "rays": rays}[sys.argv[1]](Path(sys.argv[2]))
