@@ -11,8 +11,8 @@ length of their tracks, the greatest distance between an observation and COLMAP'
 point [px]; and for points that COLMAP triangulates of SIFT features with our poses and lens: how
 many, their mean reprojection error [px], the median distance to the nearest of our points [mm].
 `tracks` gives COLMAP our observations in place of its features, and prints how far what it
-triangulates of them is from our points [mm]. `rays`, where nerfstudio is, reads the same by its data parser and prints by how much, at most, its
-rays miss the points that they should meet [px].
+triangulates of them is from our points [mm]. `rays`, where nerfstudio is, reads the same by its
+data parser and prints by how much, at most, its rays miss the points that they should meet [px].
 """
 
 from __future__ import annotations

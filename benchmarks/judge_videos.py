@@ -169,7 +169,10 @@ def _training(package: Path, kind: str, depths: Any, ids: Any) -> None:
     given |= _parts(inference, {"detect_aspect_ratio"}, given)
     given |= {"VideoReader": VideoReader, "cpu": cpu, "Dataset": Dataset, "os": os}
     given |= {"AUGMENTOR_OPTIONS": options, "instantiate": lambda one: one, "pickle": pickle}
-    given |= {"VIDEO_RES_SIZE_INFO": theirs["VIDEO_RES_SIZE_INFO"], "traceback": __import__("traceback")}
+    given |= {
+        "VIDEO_RES_SIZE_INFO": theirs["VIDEO_RES_SIZE_INFO"],
+        "traceback": __import__("traceback"),
+    }
     given |= {"warnings": __import__("warnings")}
     data = _parts(
         package / "diffusion/datasets/example_transfer_dataset.py",

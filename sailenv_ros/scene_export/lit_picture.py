@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,8 +26,8 @@ LONGEST_SIDE_PX, FINEST = 4096, 4
 GUTTER_PX = 3.0
 """Surfaces reach beyond their edges by so much, for filters and the blocks of JPEG."""
 
-CHUNK_PX = 1 << 20
-"""Pixels that are looked at together."""
+CHUNK_PX, WIDTH_PX = 1 << 20, 1 << 10
+"""Pixels that are looked at together, and how wide they are as a picture."""
 
 Array = NDArray[np.float64]
 
@@ -65,12 +66,15 @@ def lit_picture(scene: ExportedScene) -> Texture:
         for part, places in zip(piece.parts, piece.light_places, strict=True)
         if takes_light(part.material)
     ]
-    for gutter in (GUTTER_PX, 0.0):  # what lies within a triangle has the last word
+    within = np.zeros(picture.shape[:2], bool)
+    for gutter in (0.0, GUTTER_PX):  # edges reach where no triangle is
         for surface in surfaces:
-            for at, uvs in surface.covered(size, gutter):
+            for at, uvs in surface.covered(size, gutter, within):
                 light_there = _between(arriving, (at + 0.5) / fold - 0.5, repeats=False)
                 told = srgb_from_linear(light_there * surface.colours(uvs))
                 picture[at[:, 1], at[:, 0], :3] = np.rint(255.0 * told)
+                if not gutter:
+                    within[at[:, 1], at[:, 0]] = True
     picture.flags.writeable = False
     return picture
 
@@ -115,7 +119,9 @@ class _Surface:
         colour = np.array(material.base_colour[:3], np.float32) * (1.0 - metalness(material))
         return cls(corners=corners, uvs=uvs, colour=colour, texels=texels)
 
-    def covered(self, size: Array, gutter: float) -> Iterator[tuple[NDArray[np.intp], Array]]:
+    def covered(
+        self, size: Array, gutter: float, within: NDArray[np.bool_]
+    ) -> Iterator[tuple[NDArray[np.intp], Array]]:
         """Yield pixels (N, 2) whose middles its triangles cover, and their (N, 2) coordinates.
 
         Parameters
@@ -123,13 +129,17 @@ class _Surface:
         size : (2,) float64
             Of the picture; nothing beyond it is yielded.
         gutter : float
-            So far beyond a triangle's edges, too [px].
+            So far beyond a triangle's edges, too [px]; then nothing that is `within` any.
+        within : (H, W) bool
         """
         area = _doubled_area(self.corners)
         low = np.ceil(self.corners.min(axis=1) - gutter - 0.5).clip(0)
         high = np.floor(self.corners.max(axis=1) + gutter - 0.5).clip(max=size - 1)
         sides = (high - low + 1).clip(0).astype(np.intp)
         counts = np.where(np.abs(area) > 1e-9, sides.prod(axis=1), 0)
+        shares, least = self._laws(low + 0.5, np.where(counts, area, 1.0), gutter)
+        coordinates = np.einsum("mkx,mku->mux", shares, self.uvs)
+        corner = low.astype(np.intp)
         ends = np.cumsum(counts)
         begun = 0
         while begun < len(counts):
@@ -137,29 +147,33 @@ class _Surface:
             until = max(int(np.searchsorted(ends, done + CHUNK_PX, "right")), begun + 1)
             triangle = np.repeat(np.arange(begun, until), counts[begun:until])
             inside = np.arange(len(triangle)) - (ends - counts - done)[triangle]
-            columns = sides[triangle, 0]
-            at = np.stack([inside % columns, inside // columns], axis=-1)
-            at += low[triangle].astype(np.intp)
-            shares, kept = self._shares(at + 0.5, triangle, area, gutter)
-            uvs = (shares[kept, :, None] * self.uvs[triangle[kept]]).sum(axis=1)
-            yield at[kept], uvs
+            down, right = np.divmod(inside, sides[triangle, 0])
             begun = until
+            columns, rows = right + corner[triangle, 0], down + corner[triangle, 1]
+            if gutter:
+                free = np.flatnonzero(~within[rows, columns])
+                triangle, right, down = triangle[free], right[free], down[free]
+                columns, rows = columns[free], rows[free]
+            kept = np.ones(len(triangle), bool)
+            for own in range(3):
+                kept &= _linear(shares[:, own], triangle, right, down) >= least[triangle, own]
+            triangle, right, down = triangle[kept], right[kept], down[kept]
+            uvs = [_linear(coordinates[:, axis], triangle, right, down) for axis in range(2)]
+            yield np.stack([columns[kept], rows[kept]], axis=1), np.stack(uvs, axis=1)
 
-    def _shares(
-        self, at: Array, triangle: NDArray[np.intp], area: Array, gutter: float
-    ) -> tuple[Array, NDArray[np.bool_]]:
-        """Return (N, 3) shares of the corners at points, and which of these are near enough."""
-        corners = self.corners[triangle]
-        shares = np.empty((len(at), 3))
-        kept = np.ones(len(at), bool)
+    def _laws(self, origin: Array, area: Array, gutter: float) -> tuple[Array, Array]:
+        """Return (M, 3, 3) how a corner's share grows along both axes and what it is at the origin.
+
+        And (M, 3) how small each share may be.
+        """
+        shares, least = np.empty((len(area), 3, 3)), np.empty((len(area), 3))
         for own in range(3):
-            start, end = corners[:, (own + 1) % 3], corners[:, (own + 2) % 3]
-            edge, away = end - start, at - start
-            doubled = edge[:, 0] * away[:, 1] - edge[:, 1] * away[:, 0]
-            shares[:, own] = doubled / area[triangle]
-            beyond = -doubled * np.sign(area[triangle]) / np.hypot(edge[:, 0], edge[:, 1])
-            kept &= beyond <= gutter
-        return shares, kept
+            start, end = self.corners[:, (own + 1) % 3], self.corners[:, (own + 2) % 3]
+            edge, away = end - start, origin - start
+            shares[:, own, 0], shares[:, own, 1] = -edge[:, 1] / area, edge[:, 0] / area
+            shares[:, own, 2] = (edge[:, 0] * away[:, 1] - edge[:, 1] * away[:, 0]) / area
+            least[:, own] = -gutter * np.hypot(edge[:, 0], edge[:, 1]) / np.abs(area)
+        return shares, least
 
     def colours(self, uvs: Array) -> NDArray[np.float32]:
         """Return (N, 3) linear colours at texture coordinates, whose v grows upwards."""
@@ -177,15 +191,26 @@ def _doubled_area(corners: Array) -> Array:
     return area
 
 
+def _linear(
+    laws: Array, which: NDArray[np.intp], right: NDArray[np.intp], down: NDArray[np.intp]
+) -> Array:
+    """Return (N,) values by laws (M, 3): growth along both axes, value at the origin."""
+    along, across, first = laws.T
+    values: Array = along[which] * right + across[which] * down + first[which]
+    return values
+
+
 def _between(texels: NDArray[np.float32], at: Array, *, repeats: bool) -> NDArray[np.float32]:
-    """Return (N, C) bilinear values at columns and rows (N, 2), counted from middles of texels."""
-    low = np.floor(at)
-    x, y = (at - low).astype(np.float32).T[..., None]
-    columns, rows = low.astype(np.intp).T
-    height, width = texels.shape[:2]
-    result = np.zeros((len(at), texels.shape[2]), np.float32)
-    for right, down in ((0, 0), (1, 0), (0, 1), (1, 1)):
-        u, v = columns + right, rows + down
-        u, v = (u % width, v % height) if repeats else (u.clip(0, width - 1), v.clip(0, height - 1))
-        result += (x if right else 1.0 - x) * (y if down else 1.0 - y) * texels[v, u]
-    return result
+    """Return (N, 3) bilinear values at columns and rows (N, 2), counted from middles of texels."""
+    if not len(at):
+        return np.zeros((0, 3), np.float32)
+    if repeats:
+        at = at % texels.shape[1::-1]
+    # As a picture, since rows and columns of what OpenCV samples are limited.
+    rows = -(-len(at) // WIDTH_PX)
+    places = np.zeros((2, rows * WIDTH_PX), np.float32)
+    places[:, : len(at)] = at.T
+    columns, lines = places.reshape(2, rows, WIDTH_PX)
+    border = cv2.BORDER_WRAP if repeats else cv2.BORDER_REPLICATE
+    found = cv2.remap(texels, columns, lines, cv2.INTER_LINEAR, borderMode=border)
+    return np.asarray(found.reshape(-1, 3)[: len(at)], np.float32)
