@@ -126,6 +126,13 @@ class SeenObject:
         return self.top_m - self.bottom_m
 
     @property
+    def least_height_m(self) -> float:
+        """What the same extent is at least: a box that leans is higher than what is in it [m]."""
+        axis = int(np.argmax(np.abs(self.turn[2])))
+        upright = float(abs(self.turn[2, axis]) * self.size_m[axis])
+        return 2.0 * upright - self.height_m
+
+    @property
     def middle_m(self) -> NDArray[np.float64]:
         """(3,) middle of its box in the world [m]."""
         return np.asarray(self.corners_m.mean(axis=0))

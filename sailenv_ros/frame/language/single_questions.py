@@ -24,7 +24,7 @@ def single_questions(asker: Asker) -> Iterator[Question]:
     shut: list[Question] = []
     for one in asker.named:
         yield _length(asker, "distance", one, one.distance_m)
-        if one.is_upright:
+        if one.is_upright and metres(one.least_height_m) == metres(one.height_m):
             yield _length(asker, "height", one, one.height_m)
         if one.colour and one.colour not in asker.names[one.id]:
             share = one.colours[one.colour]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from collections import Counter
 from collections.abc import Iterator
@@ -170,6 +171,23 @@ def test_answers_follow_from_pixels_and_places(graph: SceneGraph, frame: Frame) 
                 texts = [r.text for r in referring_expressions(graph) if r.object == winner.id]
                 assert one.answer in texts
         assert one.proof
+
+
+@pytest.mark.parametrize(("lean_deg", "asked"), [(0.2, True), (1.0, False)])
+def test_heights_are_asked_where_leaning_leaves_the_answer(
+    graph: SceneGraph, lean_deg: float, asked: bool
+) -> None:
+    """A seat of 0.9 m whose box reaches 1.7 mm, then 9 mm further down and up than it may."""
+    seat = next(one for one in graph.objects.values() if one.name == "seat")
+    c, s = np.cos(np.radians(lean_deg)), np.sin(np.radians(lean_deg))
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+    corners = seat.middle_m + (seat.corners_m - seat.middle_m) @ seat.turn @ turn.T
+    leaning = dataclasses.replace(seat, turn=turn, corners_m=corners)
+    assert leaning.is_upright
+    assert leaning.height_m - leaning.least_height_m == pytest.approx(2 * 0.5 * s, abs=1e-9)
+    there = {**graph.objects, seat.id: leaning}
+    found = questions(dataclasses.replace(graph, objects=there), seed=1, absent=[])
+    assert asked == any(one.kind == "height" and one.objects == (seat.id,) for one in found)
 
 
 def test_answers_are_balanced_and_seeds_ask_differently(graph: SceneGraph) -> None:
