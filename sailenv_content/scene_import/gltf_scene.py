@@ -153,6 +153,10 @@ def _add_objects(
         return
     made: dict[tuple[object, ...], ImportedAsset] = {}
     for label, parts in _grouped(read_parts(path)):
+        if told.get(label) == "outside":
+            # Rooms have theirs by a word; as an object it would be in everybody's way.
+            scene.notes.append(f"{label!r}, which is seen through windows, was left out")
+            continue
         shown = names.of_object(label)
         pose, local = _placed(parts)
         category = told.get(label) or category_of_name(f"{label} {parts[0].name}")

@@ -209,6 +209,8 @@ def _export(
     writer = formats.get(path.suffix.lower())
     if writer is None:
         accepted = f"one that ends in one of: {', '.join(formats)}"
+        if path.suffix.lower() in ASSET_FORMATS:
+            accepted += f"; {path.suffix.lower()} holds one object, see `sailenv assets export`"
         raise InvalidRequest("name of the file", path.name, accepted)
     if not path.absolute().parent.is_dir():
         raise InvalidRequest("folder of the file", str(path.parent), "one that exists")

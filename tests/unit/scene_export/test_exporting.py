@@ -26,6 +26,11 @@ def test_other_formats_are_refused(name: str, scene_file: Path, tmp_path: Path) 
     assert not any(tmp_path.iterdir())
 
 
+def test_a_format_of_single_objects_is_explained(scene_file: Path, tmp_path: Path) -> None:
+    with pytest.raises(InvalidRequest, match=r"\.urdf holds one object, see `sailenv assets exp"):
+        export_scene(scene_file, tmp_path / "room.urdf")
+
+
 def test_unknown_scenes_and_assets_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UnknownName, match="scene"):
         export_scene("no_room", tmp_path / "room.glb")

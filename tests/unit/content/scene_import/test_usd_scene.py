@@ -177,3 +177,21 @@ def test_our_own_packages_are_read_back(tmp_path: Path) -> None:
     scene, read = imported(tmp_path / "view.usdz")
     assert len(scene["objects"]) == report.objects
     assert read.models > 1
+
+
+@pytest.mark.parametrize("suffix", [".usdz", ".glb"])
+def test_what_lies_outside_windows_is_left_out(suffix: str, tmp_path: Path) -> None:
+    """It is larger than things may be, so that no room with windows could be read back."""
+    room = tmp_path / "room.yaml"
+    room.write_text(
+        "version: 1\n"
+        "room: {size: [3, 3, 2.5], outside: street,\n"
+        "       openings: [{type: window, wall: north, at: 0}]}\n"
+        "objects: [{name: block, asset: cube, position: [0, 0, 0.5], static: true}]\n"
+    )
+    export_scene(room, tmp_path / f"file{suffix}")
+    scene, read = imported(tmp_path / f"file{suffix}")
+    names = {entry["name"] for entry in scene["objects"]}
+    assert {"block", "floor"} <= names
+    assert "outside" not in names
+    assert any("windows, was left out" in note for note in read.notes)
