@@ -90,7 +90,8 @@ def views(folder: Path) -> None:
             c, s = float(np.cos(turns[number])), float(np.sin(turns[number]))
             height = (1.1, 1.55, 1.9)[number % 3]
             eye = (1.9 * c, 1.3 * s, height)
-            pose = look_at(EYE, TARGET) if number < 0 else look_at(eye, (-0.9 * c, -0.9 * s, 0.8))
+            far = (-0.9 * c, -0.9 * s, (0.4, 1.0, 1.7)[number // 3 % 3])  # the ceiling, too
+            pose = look_at(EYE, TARGET) if number < 0 else look_at(eye, far)
             simulation.set_pose(pose)
             simulation.step(1)
             writer.add(simulation.capture.within(300.0)())

@@ -15,6 +15,7 @@ import numpy as np
 from sailenv_ros.dataset.formats.data_files import write_bytes
 from sailenv_ros.dataset.formats.dataset_format import Sample
 from sailenv_ros.dataset.formats.photogrammetry import PointTracks, PosedPicture, PosedPictures
+from sailenv_ros.dataset.formats.scene_folders import write_lists
 from sailenv_ros.scene.calibration_files import COLMAP_CORNER_PX, colmap_camera
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import Pose
@@ -65,6 +66,8 @@ class ColmapExport(PosedPictures):
             ("points3D.txt", _points(tracks, first)),
         ):
             write_bytes(model / name, "".join(f"{line}\n" for line in lines).encode())
+        # Where 3-D Gaussian splatting looks for those that are held back.
+        write_lists(model, [(picture.name, picture.split) for picture in pictures])
 
 
 def _points(tracks: PointTracks, first: np.ndarray) -> Iterator[str]:

@@ -115,6 +115,8 @@ class DatasetFormat(ABC):
         Views of which a frame must have at least one; none means no such demand.
     is_sequence : bool
         True if its frames belong together, so that they cannot be split.
+    tells_splits : bool
+        True if it is a sequence that tells of each frame which split it is of.
     resumable : bool
         False if it must be given all frames again after a break.
     needs_neighbours : bool
@@ -147,6 +149,7 @@ class DatasetFormat(ABC):
     views: ClassVar[tuple[str, ...]] = ()
     any_of: ClassVar[tuple[str, ...]] = ()
     is_sequence: ClassVar[bool] = False
+    tells_splits: ClassVar[bool] = False
     resumable: ClassVar[bool] = True
     needs_neighbours: ClassVar[bool] = False
     needs_facts: ClassVar[bool] = False

@@ -113,7 +113,7 @@ class DatasetWriter:
             raise InvalidRequest("formats", (), f"at least one of: {', '.join(FORMATS)}")
         classes = {name: format_class(name) for name in names}
         for name, made in classes.items():
-            if splits is not None and made.is_sequence:
+            if splits is not None and made.is_sequence and not made.tells_splits:
                 raise InvalidRequest("split", name, "none, as frames of that format are a sequence")
         self.folder = Path(folder)
         self._splits = splits

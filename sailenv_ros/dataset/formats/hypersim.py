@@ -38,6 +38,7 @@ class HypersimExport(ScanExport):
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "depth", "category", "instance")
     title: ClassVar[str] = "Hypersim"
+    picture: ClassVar[str] = f"images/{_PREVIEW}/frame.{{number:04d}}.tonemap.jpg"
     packages: ClassVar[tuple[str, ...]] = ("h5py",)
 
     def __init__(self, folder: Path) -> None:
@@ -49,7 +50,7 @@ class HypersimExport(ScanExport):
         frame, images = sample.frame, folder / "images"
         stem = f"frame.{number:04d}"
         picture = encode_jpeg(frame["rgb"], QUALITY)
-        write_bytes(images / _PREVIEW / f"{stem}.tonemap.jpg", picture)
+        write_bytes(folder / self.picture.format(number=number), picture)
         lens, pose = frame.camera.intrinsics, frame.camera.world_from_camera
         rays = lens.rays()
         depth = np.where(np.isfinite(frame["depth"]), frame["depth"], np.nan).astype(np.float64)

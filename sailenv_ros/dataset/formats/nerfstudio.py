@@ -18,6 +18,7 @@ from sailenv_ros.dataset.formats.data_files import write_bytes, write_json, writ
 from sailenv_ros.dataset.formats.dataset_format import Sample
 from sailenv_ros.dataset.formats.images import scaled_depth
 from sailenv_ros.dataset.formats.photogrammetry import PointTracks, PosedPicture, PosedPictures
+from sailenv_ros.dataset.formats.scene_folders import by_splits
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.truth.ply import ply_bytes
 from sailenv_ros.scene.calibration_files import COLMAP_CORNER_PX
@@ -67,7 +68,9 @@ class NerfstudioExport(PosedPictures):
             }
             for picture, lens in zip(pictures, lenses, strict=True)
         ]
-        table = {**shared, **self.more_of_scene(pictures, tracks), "frames": frames}
+        names = by_splits((f"images/{picture.name}", picture.split) for picture in pictures)
+        splits = {f"{split}_filenames": files for split, files in names.items()}
+        table = {**shared, **self.more_of_scene(pictures, tracks), **splits, "frames": frames}
         write_json(folder / "transforms.json", table)
         places = {name: tracks.xyz[:, k].astype(np.float32) for k, name in enumerate("xyz")}
         colours = {name: tracks.rgb[:, k] for k, name in enumerate(("red", "green", "blue"))}

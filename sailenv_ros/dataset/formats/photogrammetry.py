@@ -50,12 +50,15 @@ class PosedPicture:
     camera : Camera
     poses : (65536,) int32
         A number for the place of each instance, which changes where that does; -1: there is none.
+    split : str
+        Empty for none.
     """
 
     number: int
     name: str
     camera: Camera
     poses: NDArray[np.int32]
+    split: str = ""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -108,7 +111,9 @@ class PosedPictures(SceneFolders):
         kept.parent.mkdir(parents=True, exist_ok=True)
         with kept.open("wb") as file:
             np.savez(file, reach=_reach(frame), instance=frame["instance"], rgb=frame["rgb"])
-        picture = PosedPicture(number=sample.number, name=name, camera=frame.camera, poses=poses)
+        picture = PosedPicture(
+            number=sample.number, name=name, camera=frame.camera, poses=poses, split=sample.split
+        )
         self._pictures.setdefault(folder, []).append(picture)
         return WriteResult(written={"pictures": 1})
 

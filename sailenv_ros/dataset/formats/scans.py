@@ -20,7 +20,7 @@ from sailenv_ros.dataset.formats.data_files import write_bytes, write_json, writ
 from sailenv_ros.dataset.formats.dataset_format import Record, Sample, WriteResult
 from sailenv_ros.dataset.formats.images import scaled_depth
 from sailenv_ros.dataset.formats.nyu40 import NYU40
-from sailenv_ros.dataset.formats.scene_folders import SceneFolders
+from sailenv_ros.dataset.formats.scene_folders import SceneFolders, write_lists
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.pictures.codecs import encode_jpeg
 from sailenv_ros.types.camera import CameraIntrinsics
@@ -34,14 +34,22 @@ SCANNET_PER_METRE, REPLICA_PER_METRE = 1000.0, 6553.5
 
 
 class ScanExport(SceneFolders):
-    """A format whose frames share one pin-hole."""
+    """A format whose frames share one pin-hole.
+
+    Attributes
+    ----------
+    picture : str
+        Name of a picture's file, by its ``number``.
+    """
 
     views: ClassVar[tuple[str, ...]] = ("rgb", "depth")
+    picture: ClassVar[str]
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
         self._lenses: dict[Path, CameraIntrinsics] = {}
         self._counts: dict[Path, int] = {}
+        self._split: dict[Path, list[tuple[str, str]]] = {}
 
     def add(self, sample: Sample) -> WriteResult:
         """Write a frame's files, which are counted from 0 in each folder."""
@@ -53,12 +61,15 @@ class ScanExport(SceneFolders):
         number = self._counts.get(folder, 0)
         self.write_frame(folder, number, sample)
         self._counts[folder] = number + 1
+        name = self.picture.format(number=number)
+        self._split.setdefault(folder, []).append((name, sample.split))
         return WriteResult(written={"pictures": 1})
 
     def finish(self, records: Sequence[Record]) -> None:
         """Write what all frames of a folder have in common."""
         for folder, lens in self._lenses.items():
             self.write_scene(folder, lens)
+            write_lists(folder, self._split[folder])
 
     @abstractmethod
     def write_frame(self, folder: Path, number: int, sample: Sample) -> None:
@@ -76,6 +87,7 @@ class ScanNetExport(ScanExport):
     """
 
     title: ClassVar[str] = "ScanNet"
+    picture: ClassVar[str] = "color/{number}.jpg"
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
@@ -84,7 +96,7 @@ class ScanNetExport(ScanExport):
     def write_frame(self, folder: Path, number: int, sample: Sample) -> None:
         """Write the files of one frame."""
         frame = sample.frame
-        write_bytes(folder / "color" / f"{number}.jpg", encode_jpeg(frame["rgb"], QUALITY))
+        write_bytes(folder / self.picture.format(number=number), encode_jpeg(frame["rgb"], QUALITY))
         depth = scaled_depth(frame["depth"], SCANNET_PER_METRE)
         write_png(folder / "depth" / f"{number}.png", depth)
         pose = frame.camera.world_from_camera
@@ -112,6 +124,7 @@ class ReplicaExport(ScanExport):
     """``results/`` with pictures and depth (6553.5 steps a metre), ``traj.txt``, the lens."""
 
     title: ClassVar[str] = "Replica"
+    picture: ClassVar[str] = "results/frame{number:06d}.jpg"
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
@@ -120,7 +133,8 @@ class ReplicaExport(ScanExport):
     def write_frame(self, folder: Path, number: int, sample: Sample) -> None:
         """Write the files of one frame."""
         frame, results = sample.frame, folder / "results"
-        write_bytes(results / f"frame{number:06d}.jpg", encode_jpeg(frame["rgb"], QUALITY))
+        picture = encode_jpeg(frame["rgb"], QUALITY)
+        write_bytes(folder / self.picture.format(number=number), picture)
         depth = scaled_depth(frame["depth"], REPLICA_PER_METRE)
         write_png(results / f"depth{number:06d}.png", depth)
         self._poses.setdefault(folder, []).append(frame.camera.world_from_camera.reshape(-1))

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import ClassVar
 
+from sailenv_ros.dataset.formats.data_files import write_bytes
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat, Sample
+from sailenv_ros.dataset.formats.splits import SPLITS
 from sailenv_ros.errors import InvalidRequest
 
-__all__ = ["SceneFolders"]
+__all__ = ["SceneFolders", "by_splits", "write_lists"]
 
 
 class SceneFolders(DatasetFormat):
@@ -19,6 +22,7 @@ class SceneFolders(DatasetFormat):
     """
 
     is_sequence: ClassVar[bool] = True
+    tells_splits: ClassVar[bool] = True
     resumable: ClassVar[bool] = False
     title: ClassVar[str]
 
@@ -42,3 +46,17 @@ class SceneFolders(DatasetFormat):
         if self._scenes.setdefault(folder, scene) != scene:
             folder /= f"{frame.scene}_{frame.epoch}"
         return folder
+
+
+def by_splits(pictures: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
+    """Return the names of each split's pictures, of (name, split); nothing of what has none."""
+    found: dict[str, list[str]] = {}
+    for name, split in pictures:
+        found.setdefault(split, []).append(name)
+    return {split: found[split] for split in SPLITS if split in found}
+
+
+def write_lists(folder: Path, pictures: Iterable[tuple[str, str]]) -> None:
+    """Write ``train.txt`` and so on: the names of a split's pictures, a line each."""
+    for split, names in by_splits(pictures).items():
+        write_bytes(folder / f"{split}.txt", "".join(f"{name}\n" for name in names).encode())

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.dataset import engine_of, load_job, make_dataset
 from sailenv_ros.dataset.formats import DatasetWriter
 from sailenv_ros.dataset.formats.formats import FORMATS
+from sailenv_ros.dataset.formats.splits import Splits
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.simulation import Simulation
@@ -214,3 +215,33 @@ def test_a_recipe_writes_a_model_for_each_clip_and_asks_with_facts(tmp_path: Pat
     lines = (tmp_path / "made" / "vqa" / "train.jsonl").read_text().splitlines()
     kinds = {json.loads(line)["kind"] for line in lines}
     assert "distance" in kinds
+
+
+def test_splits_are_told_as_their_readers_look_for_them(taken: list[Frame], tmp_path: Path) -> None:
+    """nerfstudio in its table, Gaussian splatting beside the model, the others as lists."""
+    splits = Splits((0.5, 0.0, 0.5), seed=1)
+    by_split: dict[str, list[int]] = {}
+    with DatasetWriter(tmp_path, POSED, splits=splits) as writer:
+        for number in range(4):
+            by_split.setdefault(splits.of_frame(number), []).append(number)
+            writer.add(taken[number % 2])
+    assert {*by_split} == {"train", "test"}
+    for name in ("nerfstudio", "instant-ngp"):
+        table = json.loads((tmp_path / name / "transforms.json").read_text())
+        assert "val_filenames" not in table
+        for split, numbers in by_split.items():
+            assert table[f"{split}_filenames"] == [f"images/{n:06d}.png" for n in numbers]
+    lists = {
+        "colmap/sparse/0": "{:06d}.png",
+        "3dgs/sparse/0": "{:06d}.png",
+        "scannet": "color/{}.jpg",
+        "replica": "results/frame{:06d}.jpg",
+        "hypersim": "images/scene_cam_00_final_preview/frame.{:04d}.tonemap.jpg",
+    }
+    for folder, form in lists.items():
+        for split, numbers in by_split.items():
+            lines = (tmp_path / folder / f"{split}.txt").read_text().splitlines()
+            assert lines == [form.format(n) for n in numbers]
+            if "/" in form:
+                assert all((tmp_path / folder / line).is_file() for line in lines)
+        assert not (tmp_path / folder / "val.txt").exists()
