@@ -69,6 +69,7 @@ def add_parser(subparsers: Any) -> None:
         metavar="NAME",
         help="categories that are no objects, e.g. wall floor ceiling; coco tells them apart",
     )
+    parser.add_argument("--undistort", action="store_true", help="write what a pin-hole would see")
     parser.add_argument(
         "--resume", action="store_true", help="go on with an export that was broken off"
     )
@@ -96,6 +97,7 @@ def run(args: argparse.Namespace) -> int:
             categories=tuple(args.categories),
             stuff=tuple(args.stuff),
         ),
+        undistort=args.undistort,
         resume=args.resume,
         on_frame=tell,
     )

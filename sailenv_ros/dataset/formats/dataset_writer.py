@@ -27,6 +27,7 @@ from sailenv_ros.dataset.identity import WorkIdentity
 from sailenv_ros.dataset.store import ResumableStore
 from sailenv_ros.errors import InvalidRequest, InvalidState, PlaceTaken
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.undistorted import undistorted
 
 __all__ = ["SUMMARY_FILE", "DatasetWriter", "FormatSummary", "DatasetSummary"]
 
@@ -77,6 +78,8 @@ class DatasetWriter:
         Which flow those formats write that have the choice: to the next frame, to the one before.
     rules : AnnotationRules
         Which objects are annotated.
+    undistort : bool
+        True writes what pin-holes would see; see `frame.undistorted`.
     source : str
         What the frames come from, told in the summary.
     resume : bool
@@ -103,6 +106,7 @@ class DatasetWriter:
         splits: Splits | None = None,
         flow: FlowDirection = "forward",
         rules: AnnotationRules = ALL_OBJECTS,
+        undistort: bool = False,
         source: str = "",
         resume: bool = False,
     ) -> None:
@@ -124,8 +128,9 @@ class DatasetWriter:
             "flow": flow,
             "source": source,
             **({} if rules == ALL_OBJECTS else {"rules": asdict(rules)}),
+            **({"undistort": True} if undistort else {}),
         }
-        self._rules = rules
+        self._rules, self._undistort = rules, undistort
         if (self.folder / OLD_JOURNAL).is_file():
             raise PlaceTaken(str(self.folder), "holds a data set that an older version began")
         store = ResumableStore(
@@ -171,6 +176,8 @@ class DatasetWriter:
         """
         if self._summary is not None:
             raise InvalidState("the data set is finished; begin another one")
+        if self._undistort:
+            frame = undistorted(frame)
         for name in self._formats:
             check_views(name, frame.views)
         if self._keeps_neighbours:

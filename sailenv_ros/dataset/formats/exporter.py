@@ -26,6 +26,7 @@ def export(
     splits: Splits | None = None,
     flow: FlowDirection = "forward",
     rules: AnnotationRules = ALL_OBJECTS,
+    undistort: bool = False,
     resume: bool = False,
     on_frame: Callable[[int, int], None] = lambda done, of: None,
 ) -> DatasetSummary:
@@ -47,6 +48,8 @@ def export(
         Which flow ``kitti`` and ``sintel`` write: to the next frame, to the one before.
     rules : AnnotationRules
         Which objects are annotated.
+    undistort : bool
+        True writes what pin-holes would see.
     resume : bool
         True continues what an earlier call of the same arguments had to leave unfinished.
     on_frame : callable
@@ -75,7 +78,14 @@ def export(
             raise RecordingError(f"{path} has no complete frame of agent {frames.agent!r}")
         source = f"{Path(path).resolve().name}, agent {frames.agent}"
         with DatasetWriter(
-            folder, names, splits=splits, flow=flow, rules=rules, source=source, resume=resume
+            folder,
+            names,
+            splits=splits,
+            flow=flow,
+            rules=rules,
+            undistort=undistort,
+            source=source,
+            resume=resume,
         ) as writer:
             for number in range(writer.done, len(frames)):
                 writer.add(frames[number])

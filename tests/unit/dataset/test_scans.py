@@ -245,3 +245,32 @@ def test_splits_are_told_as_their_readers_look_for_them(taken: list[Frame], tmp_
             if "/" in form:
                 assert all((tmp_path / folder / line).is_file() for line in lines)
         assert not (tmp_path / folder / "val.txt").exists()
+
+
+def test_bent_lenses_are_undistorted_on_request(tmp_path: Path) -> None:
+    """Points lie where they are seen: on the box's faces and the ground."""
+    scene = tmp_path / "box.yaml"
+    scene.write_text(SCENE)
+    lens = CameraIntrinsics(
+        width=64, height=48, distortion_model="plumb_bob", distortion=(-0.2, 0.05, 0.0, 0.0)
+    )
+    spec = AgentSpec(name="eye", intrinsics=lens, views=VIEWS, following=False)
+    with (
+        Simulation(scene, mode="lockstep", agent=spec) as simulation,
+        DatasetWriter(tmp_path / "straight", ["3dgs"], undistort=True) as writer,
+    ):
+        for eye in EYES:
+            simulation.set_pose(look_at(eye, (2.5, 0.0, 0.4)))
+            frame = simulation.capture()
+            writer.add(frame)
+        with pytest.raises(InvalidRequest, match="pinhole"):
+            DatasetWriter(tmp_path / "bent", ["3dgs"]).add(frame)
+    model = tmp_path / "straight" / "sparse" / "0"
+    assert (model / "cameras.txt").read_text().split()[1] == "PINHOLE"
+    lines = [line.split() for line in (model / "points3D.txt").read_text().splitlines()]
+    points = np.array([[float(word) for word in line[1:4]] for line in lines])
+    assert len(points) > 100
+    from_box = np.abs(np.abs(points - (2.5, 0.3, 0.5)).max(axis=1) - 0.5)
+    off = np.minimum(from_box, np.abs(points[:, 2]))
+    # Pixels at edges of the box lie between two of its faces.
+    assert np.percentile(off, 95.0) < 1e-3 < off.max() < 0.03
