@@ -127,7 +127,7 @@ class SeenObject:
 
     @property
     def least_height_m(self) -> float:
-        """What the same extent is at least: a box that leans is higher than what is in it [m]."""
+        """Least extent that what is in it may have: a box that leans is higher [m]."""
         axis = int(np.argmax(np.abs(self.turn[2])))
         upright = float(abs(self.turn[2, axis]) * self.size_m[axis])
         return 2.0 * upright - self.height_m
