@@ -164,7 +164,8 @@ class DataSetCaptures:
 
             def written(count: int) -> None:
                 self.progress = f"{count} of {frames} frames as {format_name}"
-                _check(folder, given_up, self._limits.capture_bytes)
+                _require_waiting(given_up)
+                _require_small(folder, self._limits.capture_bytes)
                 if time.monotonic() > until_s:
                     stopped.set()
 
@@ -182,7 +183,7 @@ class DataSetCaptures:
             packed = Path(work) / f"{stem}.zip"
             with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
                 for path in sorted(path for path in folder.rglob("*") if path.is_file()):
-                    _check(folder, given_up, self._limits.capture_bytes)
+                    _require_waiting(given_up)
                     archive.write(path, path.relative_to(work))
             # Of all that was captured the last one stays.
             if self._last is not None:
@@ -193,9 +194,12 @@ class DataSetCaptures:
         return {"key": self._last[0], "name": file.name, "frames": count, "bytes": size}
 
 
-def _check(folder: Path, given_up: threading.Event, most_bytes: int) -> None:
+def _require_waiting(given_up: threading.Event) -> None:
     if given_up.is_set():
         raise InvalidState("the capture was given up, as nobody waits for it")
+
+
+def _require_small(folder: Path, most_bytes: int) -> None:
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     if size > most_bytes:
         most = f"{most_bytes / 1e6:g} MB"

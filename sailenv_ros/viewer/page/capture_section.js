@@ -35,7 +35,7 @@ export class CaptureSection {
       "Data set for training",
       line("format", this.#format),
       line("frames", this.#frames),
-      line("a second", this.#rate),
+      line("frames a second", this.#rate),
       el("div", { class: "buttons" }, this.#begin, this.#stop),
       this.#told,
     );
