@@ -17,6 +17,7 @@ from aiohttp import web
 
 from sailenv_ros.errors import InvalidState, UnknownName
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.system.files import storage_errors
 from sailenv_ros.viewer.access_control import AccessControl
 from sailenv_ros.viewer.messages import CapturedDataSet
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
@@ -73,7 +74,6 @@ class DataSetCaptures:
         self.progress = ""
         self._simulation, self._access, self._limits = simulation, access, limits
         self._maker = maker
-        self._one_at_a_time = asyncio.Lock()
         self._stopped, self._given_up = threading.Event(), threading.Event()
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._last: tuple[str, Path] | None = None
@@ -94,25 +94,24 @@ class DataSetCaptures:
             If format, agent or a number cannot be accepted.
         InvalidState
             If another one is being captured, or it grows too large.
-        RecordingError
+        RecordingError, StorageError
             If it cannot be written.
         """
         maker = self._maker
         if maker is None or format_name not in maker.formats:
             raise UnknownName("format", format_name[:80], self.formats)
-        if self._one_at_a_time.locked():
+        if self.progress:
             raise InvalidState("another data set is being captured; stop it first")
         self._stopped, self._given_up = threading.Event(), threading.Event()
         self.progress = "waiting for the first frame"
 
         async def made() -> CapturedDataSet:
-            async with self._one_at_a_time:
-                try:
-                    return await asyncio.to_thread(
-                        self._captured, maker, format_name, agent, frames, rate_hz
-                    )
-                finally:
-                    self.progress = ""
+            try:
+                return await asyncio.to_thread(
+                    self._captured, maker, format_name, agent, frames, rate_hz
+                )
+            finally:
+                self.progress = ""
 
         making = asyncio.create_task(made())
         try:
@@ -181,7 +180,10 @@ class DataSetCaptures:
             )
             self.progress = f"{count} frames are being packed"
             packed = Path(work) / f"{stem}.zip"
-            with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+            with (
+                storage_errors("the data set", packed),
+                zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive,
+            ):
                 for path in sorted(path for path in folder.rglob("*") if path.is_file()):
                     _require_waiting(given_up)
                     archive.write(path, path.relative_to(work))
