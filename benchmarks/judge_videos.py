@@ -18,7 +18,11 @@ import json
 import os
 import pickle
 import sys
+import traceback
 import types
+import typing
+import warnings
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -127,7 +131,7 @@ def _own_colours(pictures: Any, ids: Any) -> float:
         off = np.stack([((picture - mean) ** 2).sum(axis=-1) for mean in means])
         # Neighbours in the table of colours may look alike after coding: their colour is right.
         right += int((off.min(axis=0) + 64.0 >= _at(off, np.searchsorted(known, own))).sum())
-    return 100.0 * right / ids.size
+    return 100.0 * right / float(ids.size)
 
 
 def _at(off: Any, place: Any) -> Any:
@@ -139,9 +143,6 @@ def _training(package: Path, kind: str, depths: Any, ids: Any) -> None:
     import torch
 
     given = {"torch": torch, "pycocotools": pycocotools, "Any": Any}
-    from typing import Optional
-
-    given["Optional"] = Optional
     names = {
         "Augmentor", "AddControlInputSeg", "AddControlInputDepth", "segmentation_color_mask",
         "decode_partial_rle_width1", "VIDEO_RES_SIZE_INFO", "generate_distinct_colors",
@@ -169,11 +170,8 @@ def _training(package: Path, kind: str, depths: Any, ids: Any) -> None:
     given |= _parts(inference, {"detect_aspect_ratio"}, given)
     given |= {"VideoReader": VideoReader, "cpu": cpu, "Dataset": Dataset, "os": os}
     given |= {"AUGMENTOR_OPTIONS": options, "instantiate": lambda one: one, "pickle": pickle}
-    given |= {
-        "VIDEO_RES_SIZE_INFO": theirs["VIDEO_RES_SIZE_INFO"],
-        "traceback": __import__("traceback"),
-    }
-    given |= {"warnings": __import__("warnings")}
+    given |= {"VIDEO_RES_SIZE_INFO": theirs["VIDEO_RES_SIZE_INFO"]}
+    given |= {"traceback": traceback, "warnings": warnings}
     data = _parts(
         package / "diffusion/datasets/example_transfer_dataset.py",
         {"CTRL_TYPE_INFO", "ExampleTransferDataset"},
@@ -212,10 +210,8 @@ def _parts(path: Path, names: set[str], given: dict[str, Any]) -> dict[str, Any]
         return any(isinstance(target, ast.Name) and target.id in names for target in targets)
 
     kept = [one for one in ast.parse(path.read_text()).body if own(one)]
-    from io import BytesIO
-
     made: dict[str, Any] = {"np": np, "json": json, "os": os, "BytesIO": BytesIO, **given}
-    made |= {name: getattr(__import__("typing"), name) for name in ("Dict", "Optional", "Tuple")}
+    made |= {name: getattr(typing, name) for name in ("Dict", "Optional", "Tuple")}
     exec(compile(ast.Module(kept, []), str(path), "exec"), made)
     return {name: made[name] for name in names}
 
