@@ -5,7 +5,8 @@
     apt install libosmesa6
     python -m benchmarks.foreign_pictures write FOLDER --judges judges
     python -m benchmarks.foreign_pictures views FOLDER
-    opensplat FOLDER/views -n 3000 --val --val-image 000000.png --val-render FOLDER/seen
+    opensplat FOLDER/views -n 3000 --resolution-schedule 600 --reset-alpha-every 100 \\
+      --val --val-image 000000.png --val-render FOLDER/seen
     python -m benchmarks.foreign_pictures sheet FOLDER [-o PICTURE] [--splats FOLDER/seen]
 
 `write` exports `room_01` as MJCF and as USD with lamps and with baked light, and has Cycles trace
