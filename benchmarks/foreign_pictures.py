@@ -5,15 +5,15 @@
     apt install libosmesa6
     python -m benchmarks.foreign_pictures write FOLDER --judges judges
     python -m benchmarks.foreign_pictures views FOLDER
-    opensplat FOLDER/views -n 3000 --resolution-schedule 600 --reset-alpha-every 100 \\
-      --val --val-image 000000.png --val-render FOLDER/seen
+    opensplat FOLDER/views -n 3000 --val --val-image 000000.png --val-render FOLDER/seen
     python -m benchmarks.foreign_pictures sheet FOLDER [-o PICTURE] [--splats FOLDER/seen]
 
 `write` exports `room_01` as MJCF and as USD with lamps and with baked light, and has Cycles trace
 the former, show the latter, and MuJoCo draw. Radiance is developed as ours is, at the exposure at
 which it is most like our picture; that and the PSNR are printed. `views` exports pictures for
 https://github.com/pierotofy/OpenSplat, which trains Gaussians on processors too; the first one is
-ours, is held back, and what it draws there lies in the folder `--splats`.
+ours, is held back, and what it draws there lies in the folder `--splats`. So few steps want
+`--resolution-schedule 600 --reset-alpha-every 100`, too.
 """
 
 from __future__ import annotations
