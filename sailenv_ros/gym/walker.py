@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sailenv_ros.space.free_space import FREE, FreeSpace
+from sailenv_ros.space.free_space import FreeSpace
 from sailenv_ros.types.geometry import Pose
 
 __all__ = ["Walker"]
@@ -54,7 +54,8 @@ class Walker:
     ) -> bool:
         """Go ahead on a straight line as far as all cells are free; say if it was stopped.
 
-        Tried every half cell.
+        Tried every half cell. It stays in its region: no way leads between cells that touch at a
+        corner.
 
         Parameters
         ----------
@@ -71,6 +72,8 @@ class Walker:
         count = math.ceil(2.0 * abs(metres) / space.resolution_m)
         (left, low), side = space.origin_m, space.resolution_m
         height, width = space.cells.shape
+        here = space.cell_of((self.x_m, self.y_m))
+        region = 0 if here is None else int(space.regions[here])
         reached = 0
         for number in range(1, count + 1):
             x_m = self.x_m + along * (number / count)
@@ -78,7 +81,7 @@ class Walker:
             row, column = math.floor((y_m - low) / side), math.floor((x_m - left) / side)
             if not (0 <= row < height and 0 <= column < width):
                 break
-            if space.cells[row, column] != FREE or is_taken(x_m, y_m):
+            if not region or space.regions[row, column] != region or is_taken(x_m, y_m):
                 break
             reached = number
         share = reached / count

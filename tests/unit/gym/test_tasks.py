@@ -55,6 +55,16 @@ def test_a_walker_stops_at_a_wall() -> None:
     assert walker.walked_m == pytest.approx(walker.y_m - 0.35)
 
 
+def test_a_walker_does_not_slip_between_cells_that_touch_at_a_corner() -> None:
+    open_ = corridor(20)
+    cells = open_.cells.copy()
+    cells[1:3, 10:] = cells[3:, :10] = 100  # free are 1:3, :10 and 3:6, 10:
+    space = FreeSpace(cells=cells, origin_m=(0.0, 0.0), body=open_.body)
+    walker = Walker(0.85, 0.15, 45.0, 1.0)
+    assert walker.walk(space, 0.5)
+    assert space.regions[space.cell_of((walker.x_m, walker.y_m)) or (0, 0)] == 2
+
+
 def test_a_walker_cannot_leave_the_map() -> None:
     open_ = corridor()
     free = FreeSpace(cells=np.zeros_like(open_.cells), origin_m=(0.0, 0.0), body=open_.body)
