@@ -7,7 +7,7 @@ stable-baselines3 and torch are not among the packages of the project: install t
 tracks sees maps of 20×20: the pixels of the object, those of the step before, and depth. Who
 searches remembers what it saw in such maps, see `gym_searcher.Searcher`. It learns in rooms of the
 split `train`, for so many minutes of processor time; every fifth of them it is measured in rooms of
-`val`.
+`val`, by which settings were chosen, or with ``--split test`` in rooms that nobody has looked at.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def make(
     Parameters
     ----------
     task : {'Track', 'Search'}
-    split : {'train', 'val'}
+    split : {'train', 'val', 'test'}
     rooms : int
     most_steps : int or None
         Of an episode; None for as many as the task has.
@@ -242,6 +242,7 @@ def main() -> None:
     parser.add_argument("task", choices=tuple(PLANS))
     parser.add_argument("--minutes", type=float, default=20.0)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--split", choices=("val", "test"), default="val")
     parser.add_argument("--episodes", type=int)
     parser.add_argument("--rooms", type=int, help="that it learns in")
     arguments = parser.parse_args()
@@ -253,7 +254,7 @@ def main() -> None:
     check_env(raw)
     print("stable_baselines3.common.env_checker.check_env: no errors", flush=True)
     raw.close()
-    unseen = make(task, "val", UNSEEN_ROOMS)
+    unseen = make(task, arguments.split, UNSEEN_ROOMS)
     random = np.random.default_rng(arguments.seed)
     script = ScriptedSearch(unseen) if isinstance(unseen, Searcher) else scripted_track
     actions = 5 if task == "Track" else 6
