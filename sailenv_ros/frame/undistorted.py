@@ -22,8 +22,6 @@ _OF_SURFACES: Final = (
 )
 """Views that tell of a surface point, wherever in the picture it is."""
 
-_NOTHING: Final = {"normals": 0.0, "depth": np.inf, "range": np.inf, "measured_depth": 0.0}
-
 _FARTHEST_PX = 30_000.0
 
 
@@ -53,7 +51,7 @@ def undistorted(frame: Frame) -> Frame:
     for name, values in frame.views.items():
         if name in _OF_SURFACES:
             found = values[nearest]
-            found[~seen] = _NOTHING.get(name, 0)
+            found[~seen] = 0
             views[name] = found
     if "rgb" in frame.views:
         u, v = places.astype(np.float32)

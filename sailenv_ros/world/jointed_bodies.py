@@ -48,7 +48,8 @@ def make_bodies(client: BulletClient, placements: Iterable[Placement]) -> list[B
     """Make the bodies of placements, all of them or none."""
     made: list[Body] = []
     try:
-        made.extend(make_body(client, placement) for placement in placements)
+        for placement in placements:
+            made.append(make_body(client, placement))
     except BaseException:
         for body in made:
             body.remove()
@@ -105,7 +106,6 @@ class JointedBody(Body):
         """Become a link of a tree; `parent` carries it, None is the world."""
         self.tree, self._number, self.parent = tree, number, parent
         self._resting = self._posed = None
-        self._version = -1
         self._id = tree.bullet_id
         self.inertia_kg_m2 = np.asarray(self._client.getDynamicsInfo(self._id, self.link)[2])
 

@@ -150,10 +150,8 @@ def make_stream(
     folder = StreamFolder(Path(output), {**job.identity, **content})
 
     def make(missing: list[int]) -> None:
-        # Nobody but `make_endless` leaves a gap.
-        begin = missing[0] * PART_FRAMES if missing else job.frames
-        if begin < job.frames:
-            _make_parts(job, folder, begin, on_frame)
+        if missing:  # from there to the end: nobody but `make_endless` leaves a gap
+            _make_parts(job, folder, missing[0] * PART_FRAMES, on_frame)
         else:
             on_frame(job.frames)
 

@@ -67,21 +67,14 @@ class BakedSceneStore:
             return None
         before = kept[1].baked
         same = before.layers is baked.layers and before.charts is baked.charts
-        return kept[1] if same and _same(kept[0], _drawn(contents)) else None
+        return kept[1] if same and kept[0] == _drawn(contents) else None
 
 
 def _drawn(contents: SceneContents) -> tuple[_Drawn, ...]:
+    """Return what has baked light, in which models are compared by identity."""
     charts = {} if contents.baked is None else contents.baked.charts
     return tuple(
         (one.instance.id, one.model, one.scale, one.lit_by)
         for one in contents.instances
         if one.instance.id in charts
-    )
-
-
-def _same(first: tuple[_Drawn, ...], second: tuple[_Drawn, ...]) -> bool:
-    """Return whether the same models stand for the same instances; models by identity."""
-    return len(first) == len(second) and all(
-        a[1] is b[1] and (a[0], *a[2:]) == (b[0], *b[2:])
-        for a, b in zip(first, second, strict=True)
     )
