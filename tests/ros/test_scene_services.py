@@ -401,9 +401,9 @@ SERVICES = {
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)  # 800 requests, some of them for large pictures
+@pytest.mark.timeout(300)  # 500 requests, some of them for large pictures
 @settings(
-    max_examples=40,
+    max_examples=25,
     deadline=None,
     phases=(Phase.explicit, Phase.reuse, Phase.generate),
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
