@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.row_poses import RowPoses
-from sailenv_ros.types.snapshot import AdaptedExposure, Observation, WorldSnapshot
+from sailenv_ros.types.snapshot import AdaptedExposure, Observation, SceneContents, WorldSnapshot
 
 __all__ = [
     "BACKEND_NAMES",
@@ -53,7 +53,7 @@ class RenderedViews:
 
 
 class RenderBackend(Protocol):
-    """A renderer; used by the thread that made it and by no other."""
+    """A renderer; used by the thread that made it and, but for `take_up`, by no other."""
 
     @property
     def description(self) -> str:
@@ -66,6 +66,12 @@ class RenderBackend(Protocol):
     @property
     def supported_views(self) -> tuple[str, ...]:
         """Views that it can make, in the order of `frame.VIEWS`."""
+
+    def take_up(self, contents: SceneContents) -> None:
+        """Make ready what their first picture needs, as far as its light does not matter.
+
+        Any thread may call it while no other one uses the renderer.
+        """
 
     def render(
         self,

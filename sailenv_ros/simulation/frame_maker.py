@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
@@ -66,6 +68,7 @@ class FrameMaker:
         self._amodal: AmodalRenderer | None = None
         self._relighter = Relighter(scene.library.baked_scenes)
         self._made = 0
+        self._is_new = True
         self.watch_light()
 
     def work_alone(self) -> None:
@@ -84,6 +87,7 @@ class FrameMaker:
 
     def watch_light(self) -> None:
         """Take up the light of the present world, which is another one or was baked again."""
+        self._is_new = True
         self._relighter.watch(self._scene.world.snapshot())
 
     def frame(
@@ -115,12 +119,7 @@ class FrameMaker:
         if self._made == GIVES_BACK:
             give_back_freed_memory()
         world = self._scene.world
-        snapshot = self._relighter.lit(
-            world.snapshot(),
-            wanted=not LIT_VIEWS.isdisjoint(views),
-            lockstep=self._lockstep,
-            changed_ns=world.changed_ns,
-        )
+        snapshot = self._lit(world.snapshot(), wanted=not LIT_VIEWS.isdisjoint(views))
         exposure = exposed(record, snapshot, self._scene.agents.camera(record, world), world)
         observed = exposure.observed
         snapshot, camera, rows = observed.snapshot, observed.camera, observed.rows
@@ -153,6 +152,24 @@ class FrameMaker:
                 lambda: self.draw_amodal(drawn_alone, camera, only)
             ),
         )
+
+    def _lit(self, snapshot: WorldSnapshot, *, wanted: bool) -> WorldSnapshot:
+        """Return the present instant in its light, and make the renderer ready meanwhile."""
+        light = partial(
+            self._relighter.lit,
+            snapshot,
+            wanted=wanted,
+            lockstep=self._lockstep,
+            changed_ns=self._scene.world.changed_ns,
+        )
+        if not (self._is_new and wanted and self._relighter.beforehand):
+            return light()
+        self._is_new = False
+        with ThreadPoolExecutor(1, "taking up") as beside:
+            ready = beside.submit(self._renderer.take_up, snapshot.contents)
+            lit = light()
+            ready.result()
+        return lit
 
     def look(self, camera: Camera, *views: str) -> Mapping[str, NDArray[Any]]:
         """Render views of the scene as it stands now, through a camera that is no agent's."""

@@ -6,10 +6,11 @@ Never bakes: a simulator that runs must not be held up for minutes.
 from __future__ import annotations
 
 import logging
+from concurrent.futures import Future, ThreadPoolExecutor
 
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.light.bake.fingerprint import fingerprint
-from sailenv_ros.light.bake.light_files import load_baked, load_draft
+from sailenv_ros.light.bake.light_files import load_baked, load_draft, remembered
 from sailenv_ros.simulation.room_exposure import take_light
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.world.world import World
@@ -40,6 +41,7 @@ class LightCache:
         self._required = required
         self._last: BakedLight | None = None
         self._is_draft = False
+        self._coming: tuple[str, Future[BakedLight | None]] | None = None
 
     def is_final(self, world: World) -> bool:
         """Return whether a world has light that no bake will replace."""
@@ -47,6 +49,21 @@ class LightCache:
         if baked is None:
             return False
         return not (self._is_draft and self._last is not None and baked.layers is self._last.layers)
+
+    def expect(self, stamp: str) -> None:
+        """Read beside its caller the light that a scene file had, while its world is built.
+
+        Parameters
+        ----------
+        stamp : str
+            As `light_files.remember` was told it.
+        """
+        name = remembered(stamp) if self._wanted else None
+        if name is None or (self._last is not None and self._last.fingerprint == name):
+            return
+        reading = ThreadPoolExecutor(1, "light")
+        self._coming = name, reading.submit(load_baked, name)
+        reading.shutdown(wait=False)
 
     def apply(self, world: World, scene: str) -> None:
         """Load a world's baked light, the draft if that is all there is, or say how to bake it.
@@ -67,7 +84,7 @@ class LightCache:
             return
         name = fingerprint(world.snapshot())
         if self._last is None or self._last.fingerprint != name or self._is_draft:
-            before, self._last, self._is_draft = self._last, load_baked(name), False
+            before, self._last, self._is_draft = self._last, self._kept(name), False
             draft = load_draft(name) if self._drafts and self._last is None else None
             if draft is not None:
                 self._last, self._is_draft = draft, True
@@ -87,3 +104,7 @@ class LightCache:
             BAKE_COMMAND,
             scene,
         )
+
+    def _kept(self, name: str) -> BakedLight | None:
+        coming, self._coming = self._coming, None
+        return coming[1].result() if coming is not None and coming[0] == name else load_baked(name)

@@ -77,10 +77,8 @@ class SceneLibrary:
     ----------
     own_folder : Path
         Scenes are saved into it.
-    baked_scenes : BakedSceneStore
-    robots : RobotStore
-    uploads : UploadedModels
-    materials : SceneMaterials
+    baked_scenes, robots : BakedSceneStore, RobotStore
+    uploads, materials : UploadedModels, SceneMaterials
     pictures : Pictures
         Those that were sent.
     """
@@ -194,6 +192,8 @@ class SceneLibrary:
         known = self._with_materials(self._knowledge_to_build, self.materials.beside(path))
         spec = with_full_paths(load_scene(path, knowledge=known), path.parent)
         self.materials.note(spec.name, path)
+        if spec.room is not None:
+            self._light_cache.expect(self.stamp(scene))
         objects = (*spec.objects, *self._added(more.objects, spec))
         spec = spec.model_copy(update={"objects": objects})
         if more.lessons is not None:
@@ -237,9 +237,8 @@ class SceneLibrary:
 
     def stamp(self, scene: str | Path) -> str:
         """Return a text that changes with the scene's file and with the packs it may use."""
-        digest = blake2b(digest_size=16)
         path = self.path(scene)
-        digest.update(f"{path} {BAKE_VERSION}".encode())
+        digest = blake2b(f"{path} {BAKE_VERSION}".encode(), digest_size=16)
         for file in (path, *self._packs.files):
             if file.is_file():
                 digest.update(file.read_bytes())

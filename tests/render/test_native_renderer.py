@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -50,6 +51,16 @@ def bytes_of(renderer: NativeRenderer, width: int, height: int) -> dict[str, byt
     past = replace(past, camera=replace(past.camera, intrinsics=camera.intrinsics))
     views = renderer.render(scene, past, camera, VIEWS).views
     return {name: views[name].tobytes() for name in VIEWS}
+
+
+def test_what_is_taken_up_before_looks_the_same(native: NativeRenderer) -> None:
+    """By another thread, as a simulation does beside the light of its first frame."""
+    plain = bytes_of(native, 64, 48)
+    renderer = NativeRenderer()
+    with ThreadPoolExecutor(1) as beside:
+        beside.submit(renderer.take_up, gallery().contents).result()
+    assert bytes_of(renderer, 64, 48) == plain
+    renderer.close()
 
 
 @pytest.mark.parametrize("size", [(64, 48), (203, 151)])

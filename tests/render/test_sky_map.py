@@ -194,6 +194,20 @@ def test_fine_differences_of_what_is_bright_stay() -> None:
     assert unchanged.mean() == pytest.approx(float(radiance.mean(dtype=np.float64)), rel=0.01)
 
 
+def test_a_sky_that_was_kept_is_the_one_that_is_made(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """On disk by its content and exposure."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    ramp = (_even(1.0) * np.geomspace(0.01, 50.0, 128)[None, :, None]).astype(np.float16)
+    made, read, other = (
+        seen_sky(_sky(ramp), SkyLook(exposure, 1.0)) for exposure in (1.0, 1.0, 2.0)
+    )
+    assert len(list((tmp_path / "arrays").glob("sky-*"))) == 2
+    np.testing.assert_array_equal(made, read)
+    assert (other != read).any()
+
+
 def test_a_bright_sky_is_not_white(world: World, renderer: RenderBackend) -> None:
     """Not even of a hundred times the brightness that is white at this exposure."""
     snapshot = world.snapshot()

@@ -6,9 +6,7 @@ the outer one, of a sheet that hangs before a wall the open one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +19,7 @@ from sailenv_ros.light.bake.worker_pool import in_chunks
 from sailenv_ros.rays.light_rays import RayScene
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
-__all__ = ["lit_sides", "lit_texels", "on_lit_sides"]
+__all__ = ["lit_texels"]
 
 RAYS = 42
 FAR_M = 0.5
@@ -46,39 +44,10 @@ def lit_texels(
 ) -> Texels:
     """Return the texels in use, on the open side of their surfaces, beyond layers that crossed."""
     texels = rasterised(geometry, layout)
-    return on_lit_sides(texels, lit_sides(geometry, scene, texels, workers))
-
-
-def lit_sides(
-    geometry: StaticGeometry, scene: RayScene, texels: Texels, workers: int = 1
-) -> dict[str, NDArray[Any]]:
-    """Return what rays tell of the sides that texels are lit from, for `on_lit_sides`.
-
-    Returns
-    -------
-    sides : dict of str to array
-        ``turned``, (T,) uint8, whether the back of each triangle is the open side; ``lifted``,
-        (K,) int32, texels that lie beyond a layer that crossed theirs, and their ``positions``,
-        (K, 3) float32 [m].
-    """
-    turned = _turned(geometry, scene, texels, workers)
-    facing = _turned_over(texels, turned)
-    lit_from = above_crossed_layers(
-        geometry, scene, facing.positions, facing.faces, facing.triangle
+    texels = _turned_over(texels, _turned(geometry, scene, texels, workers))
+    positions = above_crossed_layers(
+        geometry, scene, texels.positions, texels.faces, texels.triangle
     )
-    lifted = np.flatnonzero((lit_from != facing.positions).any(axis=1)).astype(np.int32)
-    return {
-        "turned": turned.astype(np.uint8),
-        "lifted": lifted,
-        "positions": lit_from[lifted],
-    }
-
-
-def on_lit_sides(texels: Texels, sides: Mapping[str, NDArray[Any]]) -> Texels:
-    """Return rasterised texels where they are lit from; see `lit_sides`."""
-    texels = _turned_over(texels, sides["turned"] != 0)
-    positions = texels.positions.copy()
-    positions[sides["lifted"]] = sides["positions"]
     return replace(texels, positions=positions)
 
 

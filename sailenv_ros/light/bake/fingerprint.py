@@ -6,18 +6,13 @@ import hashlib
 import json
 from collections.abc import Iterable
 from dataclasses import asdict
-from functools import lru_cache
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.settings import BAKE_VERSION, BakeSettings
 from sailenv_ros.types.lights import Environment, Light
-from sailenv_ros.types.model import Material, Model
+from sailenv_ros.types.model_digest import add_array, model_digest
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["fingerprint", "model_digest"]
+__all__ = ["fingerprint"]
 
 _NOT_BAKED = ("colour", "intensity", "indirect_multiplier")
 """Properties of lights that are not baked: each light has a layer of its own, which they scale."""
@@ -33,18 +28,13 @@ def fingerprint(snapshot: WorldSnapshot, settings: BakeSettings | None = None) -
     for drawn, pose in zip(contents.instances, snapshot.world_from_body, strict=True):
         if drawn.is_baked:
             _add(digest, [drawn.instance.id, list(drawn.scale), list(drawn.lit_by)])
-            _add_array(digest, pose)
+            add_array(digest, pose)
             digest.update(model_digest(drawn.model))
     return digest.hexdigest()
 
 
 def _add(digest: hashlib.blake2b, values: Iterable[object]) -> None:
     digest.update(json.dumps(list(values), sort_keys=True).encode())
-
-
-def _add_array(digest: hashlib.blake2b, array: NDArray[Any]) -> None:
-    digest.update(repr(array.shape).encode())
-    digest.update(np.ascontiguousarray(array).data)
 
 
 def _light(light: Light) -> dict[str, object]:
@@ -55,38 +45,9 @@ def _add_sky(digest: hashlib.blake2b, environment: Environment) -> None:
     if environment.background == "colour":
         _add(digest, ["colour", environment.background_colour])
     elif environment.sky is not None:
-        _add_array(digest, environment.sky.radiance)
+        add_array(digest, environment.sky.radiance)
     else:
         _add(
             digest,
             [environment.sky_zenith, environment.sky_horizon, environment.sky_ground],
         )
-
-
-@lru_cache(maxsize=512)
-def model_digest(model: Model) -> bytes:
-    """Hash what baked light depends on of a model; models never change."""
-    digest = hashlib.blake2b(digest_size=16)
-    for part in model.parts:
-        mesh = part.mesh
-        for array in (mesh.positions, mesh.normals, mesh.uvs, mesh.triangles):
-            _add_array(digest, array)
-        _add_material(digest, part.material)
-    return digest.digest()
-
-
-def _add_material(digest: hashlib.blake2b, material: Material) -> None:
-    _add(
-        digest,
-        [
-            material.base_colour,
-            material.emission,
-            material.glow,
-            material.alpha,
-            material.alpha_cutoff,
-            material.double_sided,
-        ],
-    )
-    texture = material.base_colour_texture
-    if texture is not None:
-        _add_array(digest, texture)

@@ -1,4 +1,4 @@
-"""Radiance of shades and bulbs of lamps by the lights in them. From `Texels` to arrays."""
+"""Radiance of shades and bulbs of lamps by the lights in them. From triangles to arrays."""
 
 from __future__ import annotations
 
@@ -7,19 +7,20 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
 __all__ = ["glows_of"]
 
 
 def glows_of(
-    geometry: StaticGeometry, texels: Texels, lit_by: Mapping[int, Iterable[str]]
+    geometry: StaticGeometry, triangle: NDArray[np.int32], lit_by: Mapping[int, Iterable[str]]
 ) -> dict[str, NDArray[np.float32]]:
     """Return what the shades of lamps emit for 1 W/sr of white light, by the light in them.
 
     Parameters
     ----------
+    triangle : (N,) int32
+        Of each texel.
     lit_by : mapping of int to iterable of str
         Names of the lights that are in an instance, by its id.
 
@@ -34,7 +35,7 @@ def glows_of(
             lamps.setdefault(name, []).append(place)
     # The last row is of no material.
     table = np.array([*(look.glow for look in geometry.materials), (0.0, 0.0, 0.0)], np.float32)
-    owner, material = geometry.owner[texels.triangle], geometry.material[texels.triangle]
+    owner, material = geometry.owner[triangle], geometry.material[triangle]
     found = {
         name: table[material] * np.isin(owner, places)[:, None] for name, places in lamps.items()
     }

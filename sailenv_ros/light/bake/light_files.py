@@ -54,6 +54,7 @@ __all__ = [
     "load_baked",
     "load_draft",
     "remember",
+    "remembered",
     "store_baked",
     "store_draft",
 ]
@@ -185,15 +186,24 @@ def remember(stamp: str, fingerprint: str) -> None:
             forget_oldest(note.parent)
 
 
-def is_baked(stamp: str) -> bool:
-    """Return whether the light of a scene file is known, there, and whole."""
+def remembered(stamp: str) -> str | None:
+    """Return the fingerprint of the light that a scene file had; None if it is not known."""
     note = baked_file(stamp).with_suffix(".known")
     try:
         fingerprint = note.read_text(encoding="ascii")
-        if not _is_fingerprint(fingerprint):
-            return False
+    except (OSError, UnicodeDecodeError):
+        return None
+    return fingerprint if _is_fingerprint(fingerprint) else None
+
+
+def is_baked(stamp: str) -> bool:
+    """Return whether the light of a scene file is known, there, and whole."""
+    fingerprint = remembered(stamp)
+    if fingerprint is None:
+        return False
+    try:
         _payload(baked_file(fingerprint))
-    except (OSError, ValueError):  # UnicodeDecodeError is one
+    except (OSError, ValueError):
         return False
     return True
 

@@ -137,7 +137,9 @@ class _Bake:
         texels = lit_texels(geometry, scene, layout, stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
         emission = emission_of(geometry, layout, texels)
-        glows = glows_of(geometry, texels, {d.instance.id: d.lit_by for d in contents.instances})
+        glows = glows_of(
+            geometry, texels.triangle, {d.instance.id: d.lit_by for d in contents.instances}
+        )
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,

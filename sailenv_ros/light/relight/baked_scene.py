@@ -9,23 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.bounces import patches_of
-from sailenv_ros.light.bake.facing import lit_sides, on_lit_sides
 from sailenv_ros.light.bake.lamp_glow import glows_of
-from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
-from sailenv_ros.light.bake.texels import Texels, rasterised
+from sailenv_ros.light.relight.baked_texels import BakedTexels, baked_texels, patch_means
 from sailenv_ros.light.relight.ray_shapes import Shape, shape_of
-from sailenv_ros.native.library import native_library
-from sailenv_ros.rays.light_rays import RayScene, glass_of
+from sailenv_ros.rays.light_rays import glass_of
 from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
-from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.baked_light import BakedLight, Unwrapping
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
 from sailenv_ros.types.model import Material, Model
@@ -70,8 +64,7 @@ class TexelPatches:
 
     def means(self, values: Floats) -> Floats:
         """Return (P,) float32: means of (N,) values of texels."""
-        sums = np.bincount(self.of_texel, weights=values, minlength=len(self.size))
-        return (sums / self.size).astype(np.float32)
+        return patch_means(self.of_texel, values, self.size)
 
 
 class BakedScene:
@@ -194,81 +187,42 @@ class BakedScene:
     def _lay_out(
         self, geometry: StaticGeometry, threads: int, lit_by: Mapping[int, Iterable[str]]
     ) -> None:
-        layout = Layout(side=self.side, charts={}, places=self._places(geometry))
-        texels = rasterised(geometry, layout)
-        texels = on_lit_sides(texels, self._lit_sides(geometry, texels, max(threads, 1)))
+        texels = baked_texels(self.baked, geometry, max(threads, 1))
         ids = np.array([instance.id for instance in geometry.instances], np.int32)
-        self.places = (texels.rows * self.side + texels.columns).astype(np.int32)
-        self.positions = np.ascontiguousarray(texels.positions, np.float32)
-        self.normals = np.ascontiguousarray(texels.normals, np.float32)
+        self.places, self.positions, self.normals = texels.places, texels.positions, texels.normals
         self.owners = ids[geometry.owner[texels.triangle]]
         self.patches = self._patches(geometry, texels)
-        layers = self.baked.layers
         layer_of = {
-            layer.light.name: n for n, layer in enumerate(layers) if layer.light is not None
+            layer.light.name: n
+            for n, layer in enumerate(self.baked.layers)
+            if layer.light is not None
         }
         self.glows = {
             layer_of[name]: np.stack([self.patches.means(part) for part in glow.T], axis=1)
-            for name, glow in glows_of(geometry, texels, lit_by).items()
+            for name, glow in glows_of(geometry, texels.triangle, lit_by).items()
             if name in layer_of
         }
-        self.irradiance = np.empty((len(self.patches.size), 3 * len(layers)), np.float32)
-        self.direct = np.empty((len(self.patches.size), len(layers)), np.float32)
-        for number, layer in enumerate(layers):
-            bounced = layer.bounced.reshape(-1, 3)[self.places].astype(np.float32)
-            for colour in range(3):
-                self.irradiance[:, 3 * number + colour] = self.patches.means(bounced[:, colour])
-            direct = layer.direct.reshape(-1)[self.places].astype(np.float32)
-            self.direct[:, number] = self.patches.means(direct)
+        self.irradiance, self.direct = texels.irradiance, texels.direct
         self.sent = self.radiance(self.irradiance, self.direct)
         self.brightest = float(np.percentile(self.irradiance.sum(axis=1), 90))
 
-    def _lit_sides(
-        self, geometry: StaticGeometry, texels: Texels, threads: int
-    ) -> Mapping[str, NDArray[Any]]:
-        """Return the sides that texels are lit from; kept on disk for light that was read there."""
-
-        def find() -> Mapping[str, NDArray[Any]]:
-            return lit_sides(geometry, RayScene(geometry), texels, threads)
-
-        if not self.baked.checksum:
-            return find()
-        key = self.baked.checksum, native_library().digest, *self.drawn
-        code = code_digest("light/bake", "native", "rays", "types")
-        return cached_arrays("sides", key, find, code=code)
-
-    def _places(self, geometry: StaticGeometry) -> Floats:
-        """Return (T, 3, 2) float32: the corners of the triangles in the map [texels]."""
-        places = np.zeros((geometry.triangle_count, 3, 2), np.float32)
-        for instance in geometry.instances:
-            chart = self.baked.charts[instance.id]
-            first = instance.first_triangle
-            size, offset = np.asarray(chart.scale), np.asarray(chart.offset)
-            flat = chart.unwrapping
-            for triangles, uvs in zip(flat.triangles, flat.uvs, strict=True):
-                own = (uvs * size + offset) * self.side
-                places[first : first + len(triangles)] = own[triangles]
-                first += len(triangles)
-        return places
-
-    def _patches(self, geometry: StaticGeometry, texels: Texels) -> TexelPatches:
-        patches = patches_of(geometry, texels)
-        of_map = np.full((self.side, self.side), -1, np.int32)
-        of_map[texels.rows, texels.columns] = patches.of_texel
-        chosen = patches.middles(texels)
+    def _patches(self, geometry: StaticGeometry, texels: BakedTexels) -> TexelPatches:
+        of_map = np.full(self.side * self.side, -1, np.int32)
+        of_map[texels.places] = texels.of_texel
+        chosen = texels.chosen
         looks = [_look(material) for material in geometry.materials]
         albedo = np.array([look[0] for look in looks], np.float32).reshape(-1, 3)
         emission = np.array([look[1] for look in looks], np.float32).reshape(-1, 3)
         material = geometry.material[texels.triangle[chosen]]
-        places = np.stack([texels.columns[chosen], texels.rows[chosen]], axis=1)
+        rows, columns = np.divmod(texels.places[chosen], self.side)
         return TexelPatches(
-            of_map=of_map,
-            of_texel=patches.of_texel,
-            places=places.astype(np.float32),
+            of_map=of_map.reshape(self.side, self.side),
+            of_texel=texels.of_texel,
+            places=np.stack([columns, rows], axis=1).astype(np.float32),
             positions=np.ascontiguousarray(self.positions[chosen]),
             normals=np.ascontiguousarray(self.normals[chosen]),
             owners=np.ascontiguousarray(self.owners[chosen]),
-            size=np.bincount(patches.of_texel, minlength=patches.count).astype(np.float32),
+            size=np.bincount(texels.of_texel, minlength=len(chosen)).astype(np.float32),
             albedo=albedo[material],
             emission=emission[material],
             materials=np.asarray(material, np.int32),

@@ -11,7 +11,6 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.fingerprint import model_digest
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
 from sailenv_ros.light.relight.object_light import (
@@ -25,6 +24,7 @@ from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.library import native_library
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.model_digest import model_digest
 
 __all__ = ["ShownShadows"]
 

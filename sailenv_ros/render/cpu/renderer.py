@@ -25,9 +25,10 @@ from sailenv_ros.render.scene.flat_mirrors import Window
 from sailenv_ros.render.scene.opening_window import OpeningWindows
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import Share
+from sailenv_ros.render.scene.seen_sky import seen_sky, sky_look
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.row_poses import RowPoses
-from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
 
 __all__ = ["NativeRenderer", "native_view"]
@@ -89,6 +90,13 @@ class NativeRenderer(DrawingRenderer):
     def supported_views(self) -> tuple[str, ...]:
         """Views that it can make, in the order of `frame.VIEWS`."""
         return views_of("lighting", "annotation", "geometry", "measurement")
+
+    def take_up(self, contents: SceneContents) -> None:
+        """Make meshes, textures and the sky ready; see `RenderBackend.take_up`."""
+        self._table.show(contents)
+        environment = contents.environment
+        if environment.sky is not None:
+            seen_sky(environment.sky, sky_look(environment))
 
     def _at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
         return self._table.at_baked_pose(snapshot)

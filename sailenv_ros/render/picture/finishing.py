@@ -25,7 +25,7 @@ from sailenv_ros.render.picture.post_pass import Light, PostPass
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.row_poses import RowPoses
-from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
 from sailenv_ros.types.views import LIT_VIEWS, VIEWS, checked_views
 
 __all__ = ["Arrays", "DrawingRenderer", "Timings"]
@@ -56,6 +56,9 @@ class DrawingRenderer(ABC):
     @abstractmethod
     def supported_views(self) -> tuple[str, ...]:
         """Views that it can make, in the order of `frame.VIEWS`."""
+
+    def take_up(self, contents: SceneContents) -> None:  # noqa: B027  # a context is its thread's
+        """Make ready what a first picture needs; see `RenderBackend.take_up`. Here nothing."""
 
     def render(
         self,

@@ -5,13 +5,12 @@ from __future__ import annotations
 import hashlib
 from collections import OrderedDict
 from collections.abc import Hashable
-from functools import lru_cache
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.model import Model
+from sailenv_ros.types.model_digest import finish_digest
 from sailenv_ros.types.snapshot import WorldSnapshot
 
 __all__ = ["ReflectionStore", "array_digest", "room_key"]
@@ -58,30 +57,10 @@ def room_key(
     for row in np.flatnonzero(still).tolist():
         drawn = contents.instances[row]
         told = drawn.instance.id, drawn.scale, tuple(drawn.lit_by)
-        digest.update(repr(told).encode() + _looks(drawn.model))
+        digest.update(repr(told).encode() + finish_digest(drawn.model))
     baked = contents.baked.of_still
     light = baked.checksum or (id(baked.layers), id(baked.charts))
     return light, digest.digest(), points.tobytes()
-
-
-@lru_cache(maxsize=512)
-def _looks(model: Model) -> bytes:
-    """Return a hash of a model's meshes and materials; models never change."""
-    digest = hashlib.sha256()
-    for part in model.parts:
-        mesh, material = part.mesh, part.material
-        told = (
-            material.base_colour, material.metallic, material.roughness, material.emission,
-            material.glow, material.alpha, material.alpha_cutoff, material.double_sided,
-        )  # fmt: skip
-        digest.update(repr(told).encode())
-        for array in (
-            *(mesh.positions, mesh.normals, mesh.uvs, mesh.triangles),
-            *(material.base_colour_texture, material.metallic_roughness_texture),
-            material.normal_texture,
-        ):
-            digest.update(b"-" if array is None else array_digest(array))
-    return digest.digest()
 
 
 def array_digest(array: NDArray[Any]) -> bytes:

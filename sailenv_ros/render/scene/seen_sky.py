@@ -16,6 +16,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.render.scene.reflection_store import array_digest
+from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.colour import LUMINANCE
 from sailenv_ros.types.lights import Environment, SkyMap
 
@@ -105,6 +107,16 @@ def seen_sky(sky: SkyMap, look: SkyLook = AS_IT_IS) -> NDArray[np.float16]:
 
 @lru_cache(maxsize=1)
 def _seen(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
+    found: NDArray[np.float16] = cached_arrays(
+        "sky",
+        [array_digest(sky.radiance), exposure, cv2.__version__],
+        lambda: {"seen": _made(sky, exposure)},
+        code=code_digest("render/scene", "types"),
+    )["seen"]
+    return found
+
+
+def _made(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
     radiance = _without_spots(sky.radiance.astype(np.float32))
     if exposure is not None:
         radiance = _blended(radiance, 2.0**exposure)

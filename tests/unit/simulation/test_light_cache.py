@@ -12,9 +12,15 @@ from sailenv_ros.cli import scene_bake
 from sailenv_ros.cli.main import main
 from sailenv_ros.errors import InvalidState
 from sailenv_ros.light.bake.fingerprint import fingerprint
-from sailenv_ros.light.bake.light_files import is_baked, store_baked, store_draft
+from sailenv_ros.light.bake.light_files import (
+    is_baked,
+    load_baked,
+    remember,
+    store_baked,
+    store_draft,
+)
 from sailenv_ros.light.bake.pipeline import bake
-from sailenv_ros.simulation import Simulation
+from sailenv_ros.simulation import Simulation, light_cache
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.light_choice import LightChoice
@@ -69,6 +75,34 @@ def test_a_room_gets_its_light_from_the_cache(cell: Path) -> None:
     assert set(first.charts) == {
         drawn.instance.id for drawn in contents(library, cell).instances if drawn.instance.static
     }
+
+
+def test_light_is_read_while_its_world_is_built(
+    cell: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Once, if the note of its file is right; a wrong note costs time alone."""
+    read: list[str] = []
+
+    def counted(name: str) -> BakedLight | None:
+        read.append(name)
+        return load_baked(name)
+
+    monkeypatch.setattr(light_cache, "load_baked", counted)
+    light = quick_bake(SceneLibrary(), cell)
+    store_baked(light)
+    read.clear()
+    wrong = "0" * 32
+    for note, wanted in (
+        (wrong, {wrong, light.fingerprint}),
+        (light.fingerprint, {light.fingerprint}),
+    ):
+        remember(SceneLibrary().stamp(cell), note)
+        assert contents(SceneLibrary(), cell).baked is not None
+        assert len(read) == len(wanted)
+        assert set(read) == wanted
+        read.clear()
+    assert contents(SceneLibrary(baked_light=False), cell).baked is None
+    assert not read
 
 
 def test_a_draft_stands_in_until_the_light_is_there(cell: Path) -> None:

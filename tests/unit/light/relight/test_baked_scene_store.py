@@ -5,8 +5,10 @@ from __future__ import annotations
 import gc
 import weakref
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
+import pytest
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
@@ -36,6 +38,22 @@ def test_the_same_room_is_made_ready_once() -> None:
     assert outside.patches is first.patches
     assert outside.sky.max() == np.float32(0.8)
     assert first.sky.max() == 0.0
+
+
+def test_texels_that_were_kept_are_those_that_are_laid_out(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Of a bake that lies on disk; another bake has others."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    snapshot = room(lights=(LAMP,))
+    contents = snapshot.contents
+    assert contents.baked is not None
+    for checksum, files in (("one", 1), ("one", 1), ("another", 2)):
+        baked = replace(contents.baked, checksum=checksum)
+        scene = BakedScene(baked, replace(contents, baked=baked), 1)
+        assert len(list((tmp_path / "arrays").glob("texels-*"))) == files
+        assert_same(scene, scene_of(snapshot))
+        np.testing.assert_array_equal(scene.normals, scene_of(snapshot).normals)
 
 
 def test_another_light_or_another_look_is_another_scene() -> None:
