@@ -21,6 +21,7 @@ __all__ = [
     "gather_light",
     "make_picture",
     "resolve_samples",
+    "scale_light",
 ]
 
 F32 = np.float32
@@ -254,6 +255,23 @@ def gather_light(
         light = light + spread * normal[_random_words(seed, light.shape)]
     result = radiance.copy()
     result[..., :3] = np.clip(light, F32(0.0), F32(6e4))
+    return result
+
+
+def scale_light(
+    radiance: NDArray[np.float16],
+    share: Floats | None,
+    factors: Floats,
+    offsets: Floats,
+    *,
+    threads: int,
+) -> NDArray[np.float16]:
+    """Weaken light by pixels and by colours; see `native.picture_kernels`."""
+    light = radiance[..., :3].astype(F32) * factors
+    if share is not None:
+        light = light * share[..., None]
+    result = radiance.copy()
+    result[..., :3] = np.clip(light + offsets, F32(0.0), F32(65504.0))
     return result
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.lens_rays import depth_shares
+from sailenv_ros.native.picture_kernels import scale_light, weigh_light
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.picture_settings import PictureSettings
 
@@ -29,7 +30,11 @@ VEIL = 0.5
 
 
 def through_lens(
-    radiance: NDArray[np.float16], lens: CameraIntrinsics, settings: PictureSettings
+    radiance: NDArray[np.float16],
+    lens: CameraIntrinsics,
+    settings: PictureSettings,
+    *,
+    threads: int = 1,
 ) -> NDArray[np.float16]:
     """Let light through a lens.
 
@@ -40,24 +45,41 @@ def through_lens(
     lens : CameraIntrinsics
     settings : PictureSettings
         Of which `dirt`, `lateral_colour` and `vignetting` count.
+    threads : int
+        The result does not depend on it.
 
     Returns
     -------
     radiance : (H, W, 4) float16
         A fresh array.
     """
-    light = radiance.astype(np.float32)
     if settings.lateral_colour:
+        light = radiance.astype(np.float32)
         for channel, share in ((0, settings.lateral_colour), (2, -settings.lateral_colour)):
             light[..., channel] = _scaled(light[..., channel], lens, 1.0 + share)
-    if settings.vignetting:
-        light[..., :3] *= _falloff(lens, settings.vignetting)[..., None]
-    if settings.dirt:
-        cover = settings.dirt * dirt_cover(lens.width, lens.height)[..., None]
-        held = cover * light[..., :3]
-        light[..., :3] -= held
-        light[..., :3] += VEIL * held.mean(axis=(0, 1), dtype=np.float64).astype(np.float32)
-    return light.astype(np.float16)
+        radiance = light.astype(np.float16)
+    if not (settings.vignetting or settings.dirt):
+        return radiance
+    left, held = _shares(lens, settings.vignetting, settings.dirt)
+    veil = np.zeros(3, np.float32)
+    if held is not None:
+        sums = weigh_light(radiance, held, threads=threads)
+        veil = (VEIL / held.size * sums).astype(np.float32)
+    return scale_light(radiance, left, np.ones(3, np.float32), veil, threads=threads)
+
+
+@lru_cache(maxsize=8)
+def _shares(
+    lens: CameraIntrinsics, vignetting: float, dirt: float
+) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+    """Return (H, W) float32 each: shares of light that pass, and that dirt holds back, if any."""
+    arriving = np.ones((lens.height, lens.width), np.float32)
+    if vignetting:
+        arriving = _falloff(lens, vignetting)
+    if not dirt:
+        return arriving, None
+    held = arriving * np.float32(dirt) * dirt_cover(lens.width, lens.height)
+    return arriving - held, held
 
 
 @lru_cache(maxsize=4)
@@ -89,7 +111,6 @@ def dirt_cover(width: int, height: int) -> NDArray[np.float32]:
     return cover
 
 
-@lru_cache(maxsize=8)
 def _falloff(lens: CameraIntrinsics, strength: float) -> NDArray[np.float32]:
     """Return (H, W) float32: 1 on the axis, and less with the fourth power of the cosine.
 

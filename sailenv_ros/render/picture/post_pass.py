@@ -140,7 +140,7 @@ class PostPass:
             )
             light = Light(radiance)
         if settings.white_balance:
-            balanced = white_balanced(light.radiance, settings.white_balance)
+            balanced = white_balanced(light.radiance, settings.white_balance, threads=self._threads)
             light = Light(balanced, light.shade, light.surface)
         rgb = tone_map.tone_map(
             light.radiance, code_table(settings), light.shade, light.surface, threads=self._threads
@@ -161,7 +161,8 @@ class PostPass:
         settings = camera.picture
         if not (settings.lateral_colour or settings.vignetting or settings.dirt):
             return light
-        return Light(through_lens(self.at_sensor(light), camera.intrinsics, settings))
+        arriving = self.at_sensor(light)
+        return Light(through_lens(arriving, camera.intrinsics, settings, threads=self._threads))
 
 
 def _known(snapshot: WorldSnapshot, still: NDArray[np.bool_]) -> NDArray[np.uint8]:

@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.picture_kernels import scale_light
 from sailenv_ros.types.colour import XYZ_FROM_RGB
 
 __all__ = ["balance_factors", "white_balanced"]
@@ -18,7 +19,9 @@ __all__ = ["balance_factors", "white_balanced"]
 DAYLIGHT_MIRED = 1e6 / 6504.0
 
 
-def white_balanced(radiance: NDArray[np.float16], mired: float) -> NDArray[np.float16]:
+def white_balanced(
+    radiance: NDArray[np.float16], mired: float, *, threads: int = 1
+) -> NDArray[np.float16]:
     """Return (H, W, 4) float16: radiance with a wrong white balance; a fresh array.
 
     Parameters
@@ -27,11 +30,11 @@ def white_balanced(radiance: NDArray[np.float16], mired: float) -> NDArray[np.fl
         Linear; the fourth number is kept.
     mired : float
         By which the light is taken for bluer than it is, see `PictureSettings.white_balance`.
+    threads : int
+        The result does not depend on it.
     """
-    factors = np.ones(4, np.float32)
-    factors[:3] = balance_factors(mired)
-    balanced: NDArray[np.float16] = np.minimum(radiance * factors, 65504.0).astype(np.float16)
-    return balanced
+    factors = np.array(balance_factors(mired), np.float32)
+    return scale_light(radiance, None, factors, np.zeros(3, np.float32), threads=threads)
 
 
 @lru_cache(maxsize=64)

@@ -44,6 +44,8 @@ from sailenv_ros.native.picture_kernels import (
     gather_light,
     make_picture,
     resolve_samples,
+    scale_light,
+    weigh_light,
 )
 from sailenv_ros.native.png_kernel import png_data
 from sailenv_ros.native.ray_kernels import build_tree, cast_rays, light_hits, light_share
@@ -324,6 +326,10 @@ def drive_sensor() -> None:
         halves = rng.choice(np.array([0.0, 1e-7, 6e4, np.inf, np.nan], np.float16), (*shape, 4))
         gather_light(halves, 0.5, np.nan, 1e38, -1, normal, threads=2)
         gather_light(halves, 1.0, 0.0, 0.0, 0, None, threads=2)
+        wild = rng.choice(np.array(NUMBERS, np.float32), shape)
+        weigh_light(halves, wild, threads=2)
+        scale_light(halves, wild, normal[:3], normal[:3], threads=2)
+        scale_light(halves, None, np.full(3, np.nan, np.float32), normal[:3], threads=2)
 
 
 def drive_relighting() -> None:

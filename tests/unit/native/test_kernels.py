@@ -165,6 +165,29 @@ def test_light_is_gathered_as_the_definition_does(
         np.testing.assert_array_equal(got.view(np.uint16), expected.view(np.uint16))
 
 
+@pytest.mark.usefixtures("instruction_set")
+@pytest.mark.parametrize("size", [(48, 64), (37, 53), (1, 1), (2, 9), (0, 4)])
+def test_light_is_weakened_as_the_definition_does(size: tuple[int, int]) -> None:
+    """By pixels and by colours; sums are those of double precision, on any number of threads."""
+    rng = np.random.default_rng(12)
+    radiance = rng.exponential(1.0, (*size, 4)).astype(np.float16)
+    radiance[:1, :1, 0] = 60000.0
+    share = rng.random(size).astype(np.float32)
+    factors, offsets = np.array([[0.7, 1.0, 1.3], [0.0, 0.01, 0.5]], np.float32)
+    light = radiance[..., :3].astype(np.float64)
+    sums = set()
+    for threads in (1, 3):
+        for weight in (None, share):
+            given = radiance, weight, factors, offsets
+            got = picture_kernels.scale_light(*given, threads=threads)
+            expected = reference.scale_light(*given, threads=1)
+            np.testing.assert_array_equal(got.view(np.uint16), expected.view(np.uint16))
+        weighed = picture_kernels.weigh_light(radiance, share, threads=threads)
+        np.testing.assert_allclose(weighed, (light * share[..., None]).sum(axis=(0, 1)), rtol=1e-6)
+        sums.add(weighed.tobytes())
+    assert len(sums) == 1
+
+
 def test_the_clients_arrays_are_those_that_numpy_makes() -> None:
     """Grey depth, colours of instances, and flow that is 0 where there is none."""
     rng = np.random.default_rng(5)
