@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
+from rcl_interfaces.srv import GetParameterTypes
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
+from rclpy.node import Node, NodeNameNonExistentError
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CameraInfo, Image
 
@@ -28,8 +30,8 @@ LATCHED = QoSProfile(
 )
 BEST_EFFORT = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
 
-DISCOVERY_S = 0.2
-"""That a server may take to discover a client that has discovered it [s]."""
+ASKED_AGAIN_S = 0.2
+"""After which a question that may not have been heard is asked once more [s]."""
 
 ANSWER_S = 30.0
 """That an answer may take [s]."""
@@ -92,9 +94,47 @@ class Probe:
         for name in new:
             until(self._clients[name].service_is_ready, f"the service {name}")
         if new:
-            # We know the servers now; that they know us nothing tells. Fast DDS drops an answer
-            # after 100 ms to a reader that is not known yet.
-            threading.Event().wait(DISCOVERY_S)
+            self._become_known({self._clients[name].service_name for name in new})
+
+    def _become_known(self, services: set[str]) -> None:
+        """Return when the servers know the clients that were made so far.
+
+        Fast DDS drops an answer to a reader that its server does not know yet, and nothing tells
+        when it does. But a participant hears of readers in the order in which they were made: one
+        that answers a newer client knows the older ones. Harmless questions are asked until then.
+        """
+        servers: set[str] = set()
+        until(lambda: servers.update(self._servers(services)) or servers, f"nodes with {services}")
+        for server in servers:
+            client = self.node.create_client(GetParameterTypes, f"{server}/get_parameter_types")
+            answered = threading.Event()
+
+            def asked(client: Any = client, answered: threading.Event = answered) -> bool:
+                if client.service_is_ready():
+                    future = client.call_async(GetParameterTypes.Request())
+                    future.add_done_callback(lambda _: answered.set())
+                return answered.wait(ASKED_AGAIN_S)
+
+            until(asked, f"an answer of {server}")
+            self.node.destroy_client(client)
+
+    def _servers(self, services: set[str]) -> set[str]:
+        """Return the nodes that have services and can be asked; else those beside them."""
+        found: dict[str, set[str]] = {}
+        for name, namespace in self.node.get_node_names_and_namespaces():
+            # One that has just gone has none.
+            with suppress(NodeNameNonExistentError):
+                node = f"{namespace.rstrip('/')}/{name}"
+                offered = self.node.get_service_names_and_types_by_node(name, namespace)
+                found[node] = {service for service, _ in offered}
+        asked = {
+            node: offers
+            for node, offers in found.items()
+            if f"{node}/get_parameter_types" in offers
+        }
+        return {node for node, offers in asked.items() if offers & services} or {
+            node for node in asked if node.startswith(self.namespace)
+        } - {self.node.get_fully_qualified_name()}
 
     def call(self, kind: Any, service: str, request: Any = None) -> Any:
         """Call a service and return its answer."""
