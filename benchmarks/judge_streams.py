@@ -3,16 +3,18 @@
     python benchmarks/judge_streams.py seek [--frames N]
     python benchmarks/judge_streams.py loader [--frames N] [--workers N]
     python benchmarks/judge_streams.py avalanche [--experiences N]
-    python benchmarks/judge_streams.py drift
-    python benchmarks/judge_streams.py still [--frames N]
+    python benchmarks/judge_streams.py drift [--seed N]
+    python benchmarks/judge_streams.py still [--frames N] [--seed N]
     python benchmarks/judge_streams.py memory [--frames N]
 
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
 shuffled. `avalanche` trains its `Naive` on experiences that are made when they are asked for.
-`drift` gives the mean colour of pictures to river's ADWIN as it comes: a camera that walks in one
-room, one drift at a time, which begins at a frame. `still` does so without any drift. `memory`
-makes two frames of each episode of `home`, and tells the memory of the process.
+`drift` gives the mean colour of pictures, and the number of categories in them, to river's ADWIN: a
+camera that walks in one room, one drift at a time, which begins at a frame. `still` does so without
+any drift. ADWIN promises few false alarms of one test, and makes one each 32 frames: its `delta` is
+divided by how many tests there are in 100,000 frames (Bonferroni). `memory` makes two frames of
+each episode of `home`, and tells the memory of the process.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -41,6 +43,15 @@ FIRST = 812_000
 ONSET, BEFORE, AFTER = 20_000, 5_000, 1_500
 WITHIN = 1_000
 """A drift is found if ADWIN tells it within so many frames of its onset."""
+
+SIGNALS = ("red", "green", "blue", "red / blue", "categories")
+
+CLOCK, FRAMES = 32, 100_000
+DELTA = 0.002 / (FRAMES / CLOCK)
+"""ADWIN's own settings are 32 and 0.002."""
+
+MOST_CATEGORIES = 32
+"""That a picture may have, so that their number is one from 0 to 1."""
 
 PLAIN: dict[str, Any] = {
     "version": 1,
@@ -88,9 +99,11 @@ def main() -> None:
     loader.add_argument("--workers", type=int, default=2)
     avalanche = actions.add_parser("avalanche")
     avalanche.add_argument("--experiences", type=int, default=10)
-    actions.add_parser("drift")
+    drift = actions.add_parser("drift")
     still = actions.add_parser("still")
-    still.add_argument("--frames", type=int, default=100_000)
+    for action in (drift, still):
+        action.add_argument("--seed", type=int, default=SEED)
+    still.add_argument("--frames", type=int, default=FRAMES)
     memory = actions.add_parser("memory")
     memory.add_argument("--frames", type=int, default=410_000)
     options = parser.parse_args()
@@ -101,9 +114,9 @@ def main() -> None:
     elif options.action == "avalanche":
         judge_avalanche(options.experiences)
     elif options.action == "drift":
-        judge_drift()
+        judge_drift(options.seed)
     elif options.action == "still":
-        judge_stillness(options.frames)
+        judge_stillness(options.frames, options.seed)
     else:
         measure_memory(options.frames)
 
@@ -201,13 +214,13 @@ def judge_avalanche(count: int) -> None:
         print(f"experience {experience.current_experience}: {len(made)} made, {most_mib:.0f} MiB")
 
 
-def judge_drift() -> None:
+def judge_drift(seed: int) -> None:
     """Tell what river's ADWIN finds of each drift."""
     for name, drift in DRIFTS.items():
-        means = _means({**PLAIN, "drift": drift}, ONSET - BEFORE, ONSET + AFTER)
+        signals = _signals({**PLAIN, "drift": drift}, seed, ONSET - BEFORE, ONSET + AFTER)
         found = {
             signal: [place - BEFORE for place in _changes(values)]
-            for signal, values in _signals(means).items()
+            for signal, values in signals.items()
         }
         first = min(
             (place for places in found.values() for place in places if place >= 0), default=None
@@ -217,15 +230,13 @@ def judge_drift() -> None:
         print(f"{name}: {told}; {early} before; {found}", flush=True)
 
 
-def judge_stillness(count: int) -> None:
+def judge_stillness(count: int, seed: int) -> None:
     """Tell what river's ADWIN finds where nothing drifts, after every 10,000 frames."""
-    from river.drift import ADWIN
-
-    detectors = {signal: ADWIN() for signal in ("red", "green", "blue", "red / blue")}
+    detectors = {signal: _detector() for signal in SIGNALS}
     found: dict[str, list[int]] = {signal: [] for signal in detectors}
     for begin in range(0, count, 10_000):
         end = min(count, begin + 10_000)
-        signals = _signals(_means(PLAIN, begin, end))
+        signals = _signals(PLAIN, seed, begin, end)
         for signal, detector in detectors.items():
             for place, value in enumerate(signals[signal].tolist(), start=begin):
                 detector.update(value)
@@ -246,29 +257,40 @@ def measure_memory(count: int) -> None:
                 print(f"frame {first}: {mib:.0f} MiB", flush=True)
 
 
-def _means(course: dict[str, Any], begin: int, end: int) -> np.ndarray:
-    """Return (N, 3): the mean colour of each picture, 0 to 255."""
+def _signals(course: dict[str, Any], seed: int, begin: int, end: int) -> dict[str, np.ndarray]:
+    """Return simple statistics of frames, from 0 to 1 each: see `SIGNALS`."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "course.yaml"
         path.write_text(yaml.safe_dump(course))
-        with streams.open(path, seed=SEED, views=("rgb",)) as stream:
-            return np.array([frame["rgb"].mean(axis=(0, 1)) for frame in stream[begin:end]])
-
-
-def _signals(means: np.ndarray) -> dict[str, np.ndarray]:
-    red, green, blue = means.T / 255.0
-    return {"red": red, "green": green, "blue": blue, "red / blue": red / blue / 4.0}
+        with streams.open(path, seed=seed, views=("rgb", "category")) as stream:
+            told = [
+                (*frame["rgb"].mean(axis=(0, 1)), len(np.unique(frame["category"])))
+                for frame in stream[begin:end]
+            ]
+    red, green, blue, categories = np.array(told).T
+    values = (
+        red / 255.0,
+        green / 255.0,
+        blue / 255.0,
+        red / blue / 4.0,
+        categories / MOST_CATEGORIES,
+    )
+    return dict(zip(SIGNALS, values, strict=True))
 
 
 def _changes(values: np.ndarray) -> list[int]:
-    from river.drift import ADWIN
-
-    detector, found = ADWIN(), []
+    detector, found = _detector(), []
     for place, value in enumerate(values.tolist()):
         detector.update(value)
         if detector.drift_detected:
             found.append(place)
     return found
+
+
+def _detector() -> Any:
+    from river.drift import ADWIN
+
+    return ADWIN(delta=DELTA, clock=CLOCK)
 
 
 if __name__ == "__main__":

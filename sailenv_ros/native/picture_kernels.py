@@ -1,8 +1,7 @@
 """The kernels of pictures: from what is seen and its radiance to 8-bit sRGB.
 
 Method and constants stand in `render.picture`: `ambient_occlusion` (how much light from around
-arrives), `optics` and `white_balance` (what weakens light), `sensor` (bloom and noise),
-`supersampling` (samples of a pixel) and `tone_map`. The tests
+arrives), `sensor` (bloom and noise), `supersampling` (samples of a pixel) and `tone_map`. The tests
 define all sums in plain NumPy.
 """
 
@@ -23,8 +22,6 @@ __all__ = [
     "gather_light",
     "make_picture",
     "resolve_samples",
-    "scale_light",
-    "weigh_light",
 ]
 
 _AMBIENT = RecordKernel(
@@ -37,8 +34,6 @@ _AMBIENT = RecordKernel(
     ("array", "inverse visibility"),
 )
 _GATHER = Kernel("gather_light", "iiiannniaa")
-_WEIGH = Kernel("weigh_light", "iiiaaa")
-_SCALE = Kernel("scale_light", "iiiaaaaa")
 _RESOLVE = Kernel("resolve", "iiiiaaaania")
 _PICTURE = Kernel("make_picture", "iiiaaaaana")
 
@@ -188,72 +183,6 @@ def gather_light(
         checked("normal", normal, np.float32, (65536,))
     result = np.empty((height, width, 4), np.float16)
     _GATHER(threads, height, width, radiance, bloom, shot, read, seed, normal, result)
-    return result
-
-
-def weigh_light(
-    radiance: NDArray[np.float16], weight: NDArray[np.float32], *, threads: int
-) -> NDArray[np.float64]:
-    """Return (3,) float64: the sums of red, green and blue, each pixel's times its weight.
-
-    Parameters
-    ----------
-    radiance : (H, W, 4) float16
-        Linear, 0 or more.
-    weight : (H, W) float32
-    threads : int
-
-    Raises
-    ------
-    InvalidRequest, NativeLibraryError
-        As `find_ambient_visibility`.
-    """
-    height, width = radiance.shape[:2]
-    checked("radiance", radiance, np.float16, (height, width, 4))
-    checked("weight", weight, np.float32, (height, width))
-    sums = np.zeros(3)
-    _WEIGH(threads, height, width, radiance, weight, sums)
-    return sums
-
-
-def scale_light(
-    radiance: NDArray[np.float16],
-    share: NDArray[np.float32] | None,
-    factors: NDArray[np.float32],
-    offsets: NDArray[np.float32],
-    *,
-    threads: int,
-) -> NDArray[np.float16]:
-    """Weaken light by pixels and by colours, and add to all pixels alike.
-
-    Parameters
-    ----------
-    radiance : (H, W, 4) float16
-        Linear, 0 or more; the fourth number is kept.
-    share : (H, W) float32 or None
-        None is 1.
-    factors, offsets : (3,) float32
-        For red, green and blue.
-    threads : int
-
-    Returns
-    -------
-    radiance : (H, W, 4) float16
-        A fresh array, 0 to 65504.
-
-    Raises
-    ------
-    InvalidRequest, NativeLibraryError
-        As `find_ambient_visibility`.
-    """
-    height, width = radiance.shape[:2]
-    checked("radiance", radiance, np.float16, (height, width, 4))
-    if share is not None:
-        checked("share", share, np.float32, (height, width))
-    for name, numbers in (("factors", factors), ("offsets", offsets)):
-        checked(name, numbers, np.float32, (3,))
-    result = np.empty((height, width, 4), np.float16)
-    _SCALE(threads, height, width, radiance, share, factors, offsets, result)
     return result
 
 

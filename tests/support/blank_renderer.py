@@ -9,12 +9,15 @@ import numpy as np
 from sailenv_ros.render.contract import RenderedViews
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.row_poses import RowPoses
-from sailenv_ros.types.snapshot import Observation, WorldSnapshot
+from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, checked_views
 
 
 class BlankRenderer:
-    """Gives zeros of the right shape; `calls` holds (snapshot, previous, camera, views)."""
+    """Gives zeros of the right shape.
+
+    `calls` holds (snapshot, previous, camera, views), `taken_up` the contents of `take_up`.
+    """
 
     description = "blank"
     software = True
@@ -22,7 +25,11 @@ class BlankRenderer:
 
     def __init__(self) -> None:
         self.calls: list[tuple[WorldSnapshot, Observation | None, Camera, tuple[str, ...]]] = []
+        self.taken_up: list[SceneContents] = []
         self.closed = False
+
+    def take_up(self, contents: SceneContents) -> None:
+        self.taken_up.append(contents)
 
     def render(
         self,

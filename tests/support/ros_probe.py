@@ -103,9 +103,8 @@ class Probe:
         when it does. But a participant hears of readers in the order in which they were made: one
         that answers a newer client knows the older ones. Harmless questions are asked until then.
         """
-        servers: set[str] = set()
-        until(lambda: servers.update(self._servers(services)) or servers, f"nodes with {services}")
-        for server in servers:
+        until(lambda: self._servers(services), f"nodes with {services}")
+        for server in self._servers(services):
             client = self.node.create_client(GetParameterTypes, f"{server}/get_parameter_types")
             answered = threading.Event()
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.lens_rays import depth_shares
-from sailenv_ros.native.picture_kernels import scale_light, weigh_light
+from sailenv_ros.native.lens_light import scale_light, weigh_light
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.picture_settings import PictureSettings
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.picture_kernels import scale_light
+from sailenv_ros.native.lens_light import scale_light
 from sailenv_ros.types.colour import XYZ_FROM_RGB
 
 __all__ = ["balance_factors", "white_balanced"]

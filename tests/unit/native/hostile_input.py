@@ -23,6 +23,7 @@ from sailenv_ros.light.relight.quality import QUICK
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.lens import LENS
+from sailenv_ros.native.lens_light import scale_light, weigh_light
 from sailenv_ros.native.lens_models import (
     lens_models,
     lens_reach,
@@ -44,8 +45,6 @@ from sailenv_ros.native.picture_kernels import (
     gather_light,
     make_picture,
     resolve_samples,
-    scale_light,
-    weigh_light,
 )
 from sailenv_ros.native.png_kernel import png_data
 from sailenv_ros.native.ray_kernels import build_tree, cast_rays, light_hits, light_share

@@ -13,7 +13,7 @@ import pytest
 
 from sailenv_ros.frame.pictures import frame_dict
 from sailenv_ros.frame.pictures.colours import grey_depth
-from sailenv_ros.native import picture_kernels, view_kernels
+from sailenv_ros.native import lens_light, picture_kernels, view_kernels
 from sailenv_ros.native.library import load_library, using_instruction_set
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN, kernel_settings
 from sailenv_ros.render.picture.tone import code_table
@@ -179,10 +179,10 @@ def test_light_is_weakened_as_the_definition_does(size: tuple[int, int]) -> None
     for threads in (1, 3):
         for weight in (None, share):
             given = radiance, weight, factors, offsets
-            got = picture_kernels.scale_light(*given, threads=threads)
+            got = lens_light.scale_light(*given, threads=threads)
             expected = reference.scale_light(*given, threads=1)
             np.testing.assert_array_equal(got.view(np.uint16), expected.view(np.uint16))
-        weighed = picture_kernels.weigh_light(radiance, share, threads=threads)
+        weighed = lens_light.weigh_light(radiance, share, threads=threads)
         np.testing.assert_allclose(weighed, (light * share[..., None]).sum(axis=(0, 1)), rtol=1e-6)
         sums.add(weighed.tobytes())
     assert len(sums) == 1

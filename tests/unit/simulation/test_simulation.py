@@ -12,6 +12,7 @@ import sailenv_ros.simulation.simulation as module
 from sailenv_ros.errors import (
     DeadlineExceeded,
     InvalidRequest,
+    InvalidState,
     PhysicsError,
     SimulationClosed,
     UnknownName,
@@ -20,6 +21,7 @@ from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.scene_info import SceneInfo
+from sailenv_ros.types.snapshot import SceneContents
 from tests.support.blank_renderer import BlankRenderer
 
 SMALL = CameraIntrinsics(width=16, height=12)
@@ -39,6 +41,31 @@ def start(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Simulation]
     yield begin
     for simulation in started:
         simulation.close()
+
+
+def test_each_scene_is_taken_up_once_and_what_fails_there_is_told(
+    start: Callable[..., Simulation], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before its first picture; ground truth alone needs nothing."""
+    renderer = BlankRenderer()
+    monkeypatch.setattr(module, "make_backend", lambda *_: renderer)
+    simulation = start(mode="lockstep", agent=EYE)
+    simulation.capture("depth")
+    assert not renderer.taken_up
+    for _ in range(2):
+        simulation.capture("rgb")
+    assert len(renderer.taken_up) == 1
+    simulation.change_scene("solid_benchmark")
+    simulation.capture("rgb", agent="eye")
+    assert len(renderer.taken_up) == 2
+
+    def fails(contents: SceneContents) -> None:
+        raise InvalidState(f"no room for {len(contents.instances)} instances")
+
+    renderer.take_up = fails  # type: ignore[method-assign]
+    simulation.change_scene("optical")
+    with pytest.raises(InvalidState, match="no room for"):
+        simulation.capture("rgb", agent="eye")
 
 
 def test_simulated_time_follows_the_wall_clock(start: Callable[..., Simulation]) -> None:
