@@ -22,6 +22,7 @@ from sailenv_ros.system.loop_server import LoopServer
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.scene_info import SceneInfo
 from sailenv_ros.viewer.access_control import SECURITY_HEADERS, AccessControl, is_loopback
+from sailenv_ros.viewer.address import DEFAULT_HOST, DEFAULT_PORT
 from sailenv_ros.viewer.agent_feed import AgentFeeds
 from sailenv_ros.viewer.client import Client
 from sailenv_ros.viewer.data_set_captures import DataSetCaptures, DataSetMaker
@@ -40,12 +41,9 @@ from sailenv_ros.viewer.scene_json import (
 from sailenv_ros.viewer.stats_news import StatsNews
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
 
-__all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "ViewerServer"]
+__all__ = ["ViewerServer"]
 
 _log = logging.getLogger(__name__)
-
-DEFAULT_HOST = "127.0.0.1"
-DEFAULT_PORT = 8090
 
 OBJECTS_S = 1.0
 """Least time between two looks at what physics has moved [s]."""

@@ -9,16 +9,17 @@ import logging
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from sailenv_ros.dataset.live_capture import LiveCapture
 from sailenv_ros.errors import AddressInUse
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.ros.nodes.lifecycle import StopRequest, finished_within
 from sailenv_ros.ros.nodes.parameter_table import SimParameters
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.background_build import BackgroundBuild, BuildStep, furnishing
-from sailenv_ros.viewer import ViewerServer
+
+if TYPE_CHECKING:
+    from sailenv_ros.viewer import ViewerServer
 
 __all__ = ["Hosted", "load_simulation"]
 
@@ -57,13 +58,7 @@ class Hosted:
         self._viewer = _unless_taken(
             parameters.viewer_port,
             "there is no window in the browser here",
-            lambda port: ViewerServer(
-                simulation,
-                host=parameters.viewer_host,
-                port=port,
-                control=parameters.viewer_control,
-                data_sets=LiveCapture(),
-            ),
+            lambda port: _viewer(simulation, parameters, port),
         )
         steps = [*first, *_furnishing(simulation, parameters)]
         self._build = BackgroundBuild(simulation, steps) if steps else None
@@ -152,6 +147,20 @@ def _furnishing(simulation: Simulation, parameters: SimParameters) -> list[Build
         light=parameters.light != "plain",
     )
     return [step]
+
+
+def _viewer(simulation: Simulation, parameters: SimParameters, port: int) -> ViewerServer:
+    # With its web library a fifth of what a simulator imports; without a viewer nobody needs it.
+    from sailenv_ros.dataset.live_capture import LiveCapture
+    from sailenv_ros.viewer import ViewerServer
+
+    return ViewerServer(
+        simulation,
+        host=parameters.viewer_host,
+        port=port,
+        control=parameters.viewer_control,
+        data_sets=LiveCapture(),
+    )
 
 
 def _unless_taken(port: int, otherwise: str, serve: Callable[[int], Server]) -> Server | None:
