@@ -98,8 +98,8 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark by folder what needs OpenGL or ROS and what is quick; longest files first.
 
-    So no test can forget its mark. Two workers take a file after the other: a long one at the end
-    would leave one of them idle.
+    So no test can forget its mark. Workers take a file after the other: a long one at the end
+    would leave the others idle.
     """
     tests = ROOT / "tests"
     missing = [name for name in NOT_QUICK if not (tests / name).exists()]

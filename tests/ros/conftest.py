@@ -11,7 +11,13 @@ from sailenv_ros import Agent
 from tests.support.ros_probe import Probe
 from tests.support.sim_node_process import NodeProcess
 
-LOCKSTEP = {"scene": "optical", "mode": "lockstep", "agent.name": ""}
+LOCKSTEP = {
+    "scene": "optical",
+    "mode": "lockstep",
+    "agent.name": "",
+    "gateway.port": 0,
+    "viewer.port": 0,
+}
 SMALL = {"width": 160, "height": 120}
 
 
