@@ -10,11 +10,11 @@
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
 shuffled. `avalanche` trains its `Naive` on experiences that are made when they are asked for.
-`drift` gives the mean colour of pictures, and the number of categories in them, to river's ADWIN: a
-camera that walks in one room, one drift at a time, which begins at a frame. `still` does so without
-any drift. ADWIN promises few false alarms of one test, and makes one each 32 frames: its `delta` is
-divided by how many tests there are in 100,000 frames (Bonferroni). `memory` makes two frames of
-each episode of `home`, and tells the memory of the process.
+`drift` gives the mean colour of pictures to river's ADWIN as it comes: a camera that walks in one
+room, one drift at a time, which begins at a frame. `still` does so without any drift. ADWIN makes a
+test each 32 frames; its `delta`, the share of false alarms, is divided by the number of tests in
+100,000 frames (Bonferroni). `memory` makes two frames of each episode of `home`, and tells the
+memory of the process.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -44,14 +44,11 @@ ONSET, BEFORE, AFTER = 20_000, 5_000, 1_500
 WITHIN = 1_000
 """A drift is found if ADWIN tells it within so many frames of its onset."""
 
-SIGNALS = ("red", "green", "blue", "red / blue", "categories")
+SIGNALS = ("red", "green", "blue", "red / blue")
 
 CLOCK, FRAMES = 32, 100_000
 DELTA = 0.002 / (FRAMES / CLOCK)
 """ADWIN's own settings are 32 and 0.002."""
-
-MOST_CATEGORIES = 32
-"""That a picture may have, so that their number is one from 0 to 1."""
 
 PLAIN: dict[str, Any] = {
     "version": 1,
@@ -262,20 +259,10 @@ def _signals(course: dict[str, Any], seed: int, begin: int, end: int) -> dict[st
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "course.yaml"
         path.write_text(yaml.safe_dump(course))
-        with streams.open(path, seed=seed, views=("rgb", "category")) as stream:
-            told = [
-                (*frame["rgb"].mean(axis=(0, 1)), len(np.unique(frame["category"])))
-                for frame in stream[begin:end]
-            ]
-    red, green, blue, categories = np.array(told).T
-    values = (
-        red / 255.0,
-        green / 255.0,
-        blue / 255.0,
-        red / blue / 4.0,
-        categories / MOST_CATEGORIES,
-    )
-    return dict(zip(SIGNALS, values, strict=True))
+        with streams.open(path, seed=seed, views=("rgb",)) as stream:
+            means = [frame["rgb"].mean(axis=(0, 1)) for frame in stream[begin:end]]
+    red, green, blue = np.array(means).T / 255.0
+    return dict(zip(SIGNALS, (red, green, blue, red / blue / 4.0), strict=True))
 
 
 def _changes(values: np.ndarray) -> list[int]:
