@@ -41,7 +41,8 @@ class LightCache:
         self._required = required
         self._last: BakedLight | None = None
         self._is_draft = False
-        self._coming: tuple[str, Future[BakedLight | None]] | None = None
+        self._prefetched: tuple[str, str, Future[BakedLight | None]] | None = None
+        self._misleading: set[str] = set()
 
     def is_final(self, world: World) -> bool:
         """Return whether a world has light that no bake will replace."""
@@ -50,7 +51,7 @@ class LightCache:
             return False
         return not (self._is_draft and self._last is not None and baked.layers is self._last.layers)
 
-    def expect(self, stamp: str) -> None:
+    def prefetch(self, stamp: str) -> None:
         """Read beside its caller the light that a scene file had, while its world is built.
 
         Parameters
@@ -58,11 +59,14 @@ class LightCache:
         stamp : str
             As `light_files.remember` was told it.
         """
-        name = remembered(stamp) if self._wanted else None
+        self._prefetched = None
+        if not self._wanted or stamp in self._misleading:
+            return
+        name = remembered(stamp)
         if name is None or (self._last is not None and self._last.fingerprint == name):
             return
         reading = ThreadPoolExecutor(1, "light")
-        self._coming = name, reading.submit(load_baked, name)
+        self._prefetched = stamp, name, reading.submit(load_baked, name)
         reading.shutdown(wait=False)
 
     def apply(self, world: World, scene: str) -> None:
@@ -83,8 +87,14 @@ class LightCache:
         if not self._wanted:
             return
         name = fingerprint(world.snapshot())
+        prefetched, self._prefetched = self._prefetched, None
+        if prefetched is not None and prefetched[1] != name:
+            # What is random in a scene may decide on its light: nothing is read in vain again.
+            self._misleading.add(prefetched[0])
+            prefetched = None
         if self._last is None or self._last.fingerprint != name or self._is_draft:
-            before, self._last, self._is_draft = self._last, self._kept(name), False
+            before, self._is_draft = self._last, False
+            self._last = load_baked(name) if prefetched is None else prefetched[2].result()
             draft = load_draft(name) if self._drafts and self._last is None else None
             if draft is not None:
                 self._last, self._is_draft = draft, True
@@ -104,7 +114,3 @@ class LightCache:
             BAKE_COMMAND,
             scene,
         )
-
-    def _kept(self, name: str) -> BakedLight | None:
-        coming, self._coming = self._coming, None
-        return coming[1].result() if coming is not None and coming[0] == name else load_baked(name)

@@ -193,7 +193,7 @@ class SceneLibrary:
         spec = with_full_paths(load_scene(path, knowledge=known), path.parent)
         self.materials.note(spec.name, path)
         if spec.room is not None:
-            self._light_cache.expect(self.stamp(scene))
+            self._light_cache.prefetch(self.stamp(scene))
         objects = (*spec.objects, *self._added(more.objects, spec))
         spec = spec.model_copy(update={"objects": objects})
         if more.lessons is not None:

@@ -103,6 +103,11 @@ def test_light_is_read_while_its_world_is_built(
         read.clear()
     assert contents(SceneLibrary(baked_light=False), cell).baked is None
     assert not read
+    remember(SceneLibrary().stamp(cell), wrong)
+    library = SceneLibrary()
+    for _ in range(3):
+        assert contents(library, cell).baked is not None
+    assert sorted(read) == sorted([wrong, light.fingerprint])
 
 
 def test_a_draft_stands_in_until_the_light_is_there(cell: Path) -> None:
