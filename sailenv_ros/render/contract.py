@@ -53,7 +53,7 @@ class RenderedViews:
 
 
 class RenderBackend(Protocol):
-    """A renderer; used by the thread that made it and, but for `take_up`, by no other."""
+    """A renderer; used by the thread that made it and, but for `preload`, by no other."""
 
     @property
     def description(self) -> str:
@@ -67,7 +67,7 @@ class RenderBackend(Protocol):
     def supported_views(self) -> tuple[str, ...]:
         """Views that it can make, in the order of `frame.VIEWS`."""
 
-    def take_up(self, contents: SceneContents) -> None:
+    def preload(self, contents: SceneContents) -> None:
         """Make ready what their first picture needs, as far as its light does not matter.
 
         Any thread may call it while no other one uses the renderer.

@@ -68,7 +68,6 @@ class FrameMaker:
         self._amodal: AmodalRenderer | None = None
         self._relighter = Relighter(scene.library.baked_scenes)
         self._made = 0
-        self._is_new = True
         self.watch_light()
 
     def work_alone(self) -> None:
@@ -165,8 +164,8 @@ class FrameMaker:
         if not (self._is_new and wanted and self._relighter.beforehand):
             return light()
         self._is_new = False
-        with ThreadPoolExecutor(1, "taking up") as beside:
-            ready = beside.submit(self._renderer.take_up, snapshot.contents)
+        with ThreadPoolExecutor(1, "preload") as beside:
+            ready = beside.submit(self._renderer.preload, snapshot.contents)
             lit = light()
             ready.result()
         return lit

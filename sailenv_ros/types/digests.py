@@ -1,4 +1,4 @@
-"""Hashes of models, by their content: what is kept on disk for them is found by these."""
+"""Hashes of models and skies, by their content: what is kept on disk for them is found by these."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.types.lights import SkyMap
 from sailenv_ros.types.model import Material, Model
 
-__all__ = ["add_array", "finish_digest", "model_digest"]
+__all__ = ["add_array", "appearance_digest", "model_digest", "sky_digest"]
 
 
 @lru_cache(maxsize=512)
@@ -28,7 +29,7 @@ def model_digest(model: Model) -> bytes:
 
 
 @lru_cache(maxsize=512)
-def finish_digest(model: Model) -> bytes:
+def appearance_digest(model: Model) -> bytes:
     """Hash all that is seen of a model: what light depends on, and how its surfaces shine."""
     digest = hashlib.blake2b(model_digest(model), digest_size=16)
     for part in model.parts:
@@ -39,6 +40,14 @@ def finish_digest(model: Model) -> bytes:
                 digest.update(b"-")
             else:
                 add_array(digest, texture)
+    return digest.digest()
+
+
+@lru_cache(maxsize=4)
+def sky_digest(sky: SkyMap) -> bytes:
+    """Hash a sky; skies never change."""
+    digest = hashlib.blake2b(digest_size=16)
+    add_array(digest, sky.radiance)
     return digest.digest()
 
 

@@ -53,12 +53,12 @@ def bytes_of(renderer: NativeRenderer, width: int, height: int) -> dict[str, byt
     return {name: views[name].tobytes() for name in VIEWS}
 
 
-def test_what_is_taken_up_before_looks_the_same(native: NativeRenderer) -> None:
+def test_what_is_preloaded_before_looks_the_same(native: NativeRenderer) -> None:
     """By another thread, as a simulation does beside the light of its first frame."""
     plain = bytes_of(native, 64, 48)
     renderer = NativeRenderer()
     with ThreadPoolExecutor(1) as beside:
-        beside.submit(renderer.take_up, gallery().contents).result()
+        beside.submit(renderer.preload, gallery().contents).result()
     assert bytes_of(renderer, 64, 48) == plain
     renderer.close()
 

@@ -16,7 +16,7 @@ from sailenv_ros.types.views import VIEWS, checked_views
 class BlankRenderer:
     """Gives zeros of the right shape.
 
-    `calls` holds (snapshot, previous, camera, views), `taken_up` the contents of `take_up`.
+    `calls` holds (snapshot, previous, camera, views), `preloaded` the contents of `preload`.
     """
 
     description = "blank"
@@ -25,11 +25,11 @@ class BlankRenderer:
 
     def __init__(self) -> None:
         self.calls: list[tuple[WorldSnapshot, Observation | None, Camera, tuple[str, ...]]] = []
-        self.taken_up: list[SceneContents] = []
+        self.preloaded: list[SceneContents] = []
         self.closed = False
 
-    def take_up(self, contents: SceneContents) -> None:
-        self.taken_up.append(contents)
+    def preload(self, contents: SceneContents) -> None:
+        self.preloaded.append(contents)
 
     def render(
         self,

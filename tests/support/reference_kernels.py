@@ -266,7 +266,7 @@ def scale_light(
     *,
     threads: int,
 ) -> NDArray[np.float16]:
-    """Weaken light by pixels and by colours; see `native.picture_kernels`."""
+    """Weaken light by pixels and by colours; see `native.lens_light`."""
     light = radiance[..., :3].astype(F32) * factors
     if share is not None:
         light = light * share[..., None]

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from dataclasses import asdict
 
 from sailenv_ros.light.bake.settings import BAKE_VERSION, BakeSettings
+from sailenv_ros.types.digests import add_array, model_digest
 from sailenv_ros.types.lights import Environment, Light
-from sailenv_ros.types.model_digest import add_array, model_digest
 from sailenv_ros.types.snapshot import WorldSnapshot
 
 __all__ = ["fingerprint"]

@@ -24,7 +24,7 @@ from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.library import native_library
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.baked_light import BakedLight
-from sailenv_ros.types.model_digest import model_digest
+from sailenv_ros.types.digests import model_digest
 
 __all__ = ["ShownShadows"]
 

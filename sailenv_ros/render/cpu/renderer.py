@@ -91,8 +91,8 @@ class NativeRenderer(DrawingRenderer):
         """Views that it can make, in the order of `frame.VIEWS`."""
         return views_of("lighting", "annotation", "geometry", "measurement")
 
-    def take_up(self, contents: SceneContents) -> None:
-        """Make meshes, textures and the sky ready; see `RenderBackend.take_up`."""
+    def preload(self, contents: SceneContents) -> None:
+        """Make meshes, textures and the sky ready; see `RenderBackend.preload`."""
         self._table.show(contents)
         environment = contents.environment
         if environment.sky is not None:

@@ -57,8 +57,8 @@ class DrawingRenderer(ABC):
     def supported_views(self) -> tuple[str, ...]:
         """Views that it can make, in the order of `frame.VIEWS`."""
 
-    def take_up(self, contents: SceneContents) -> None:  # noqa: B027  # a context is its thread's
-        """Make ready what a first picture needs; see `RenderBackend.take_up`. Here nothing."""
+    def preload(self, contents: SceneContents) -> None:  # noqa: B027  # a context is its thread's
+        """Make ready what a first picture needs; see `RenderBackend.preload`. Here nothing."""
 
     def render(
         self,

@@ -5,15 +5,15 @@ from __future__ import annotations
 import hashlib
 from collections import OrderedDict
 from collections.abc import Hashable
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.model_digest import finish_digest
+from sailenv_ros.types.digests import appearance_digest
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["ReflectionStore", "array_digest", "room_key"]
+__all__ = ["ReflectionStore", "room_key"]
 
 MOST_SHARES = 64
 """Of some rooms, each with a share for each of its lights; a share is about a megabyte."""
@@ -57,14 +57,7 @@ def room_key(
     for row in np.flatnonzero(still).tolist():
         drawn = contents.instances[row]
         told = drawn.instance.id, drawn.scale, tuple(drawn.lit_by)
-        digest.update(repr(told).encode() + finish_digest(drawn.model))
+        digest.update(repr(told).encode() + appearance_digest(drawn.model))
     baked = contents.baked.of_still
     light = baked.checksum or (id(baked.layers), id(baked.charts))
     return light, digest.digest(), points.tobytes()
-
-
-def array_digest(array: NDArray[Any]) -> bytes:
-    """Return a hash of an array's type, shape and values."""
-    digest = hashlib.sha256(repr((array.shape, array.dtype.str)).encode())
-    digest.update(np.ascontiguousarray(array).data)
-    return digest.digest()

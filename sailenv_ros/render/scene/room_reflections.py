@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from sailenv_ros.render.scene import reflection_map as reflections
 from sailenv_ros.render.scene.lightmap_compositing import Term
 from sailenv_ros.render.scene.reflection_points import ReflectionPoints
-from sailenv_ros.render.scene.reflection_store import ReflectionStore, array_digest, room_key
+from sailenv_ros.render.scene.reflection_store import ReflectionStore, room_key
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.digests import sky_digest
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.snapshot import WorldSnapshot
 
@@ -178,7 +179,7 @@ class RoomReflections:
             return self._seen(alone, look)
         sky = contents.environment.sky
         told = replace(contents.environment, sky=None, exposure=0.0)
-        lit = (None if sky is None else array_digest(sky.radiance), told) if alone is None else key
+        lit = (None if sky is None else sky_digest(sky), told) if alone is None else key
         arrays = cached_arrays(
             "reflection",
             [self._drawn_by, self._room, lit],

@@ -16,9 +16,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.render.scene.reflection_store import array_digest
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.colour import LUMINANCE
+from sailenv_ros.types.digests import sky_digest
 from sailenv_ros.types.lights import Environment, SkyMap
 
 __all__ = ["AS_IT_IS", "FINER", "SkyLook", "seen_exposure", "seen_sky", "sky_look"]
@@ -109,7 +109,7 @@ def seen_sky(sky: SkyMap, look: SkyLook = AS_IT_IS) -> NDArray[np.float16]:
 def _seen(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
     found: NDArray[np.float16] = cached_arrays(
         "sky",
-        [array_digest(sky.radiance), exposure, cv2.__version__],
+        [sky_digest(sky), exposure, cv2.__version__],
         lambda: {"seen": _made(sky, exposure)},
         code=code_digest("render/scene", "types"),
     )["seen"]

@@ -43,7 +43,7 @@ def start(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Simulation]
         simulation.close()
 
 
-def test_each_scene_is_taken_up_once_and_what_fails_there_is_told(
+def test_each_scene_is_preloaded_once_and_what_fails_there_is_told(
     start: Callable[..., Simulation], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Before its first picture; ground truth alone needs nothing."""
@@ -51,18 +51,18 @@ def test_each_scene_is_taken_up_once_and_what_fails_there_is_told(
     monkeypatch.setattr(module, "make_backend", lambda *_: renderer)
     simulation = start(mode="lockstep", agent=EYE)
     simulation.capture("depth")
-    assert not renderer.taken_up
+    assert not renderer.preloaded
     for _ in range(2):
         simulation.capture("rgb")
-    assert len(renderer.taken_up) == 1
+    assert len(renderer.preloaded) == 1
     simulation.change_scene("solid_benchmark")
     simulation.capture("rgb", agent="eye")
-    assert len(renderer.taken_up) == 2
+    assert len(renderer.preloaded) == 2
 
     def fails(contents: SceneContents) -> None:
         raise InvalidState(f"no room for {len(contents.instances)} instances")
 
-    renderer.take_up = fails  # type: ignore[method-assign]
+    renderer.preload = fails  # type: ignore[method-assign]
     simulation.change_scene("optical")
     with pytest.raises(InvalidState, match="no room for"):
         simulation.capture("rgb", agent="eye")
