@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Locator, expect
+from playwright.sync_api import Browser, Locator, WebSocketRoute, expect
 
 from sailenv_ros.cli.main import main
 from sailenv_ros.simulation import Simulation
@@ -40,6 +40,7 @@ def opened(browser: Browser, server: ViewerServer, simulation: Simulation) -> It
     opened = OpenPage(browser, server.url)
     opened.wait_for_frames()
     yield opened
+    simulation.resume()  # also after a test that failed while time stood
     opened.close()
 
 
@@ -219,6 +220,44 @@ def test_the_probe_shows_the_arrays_values(opened: OpenPage, simulation: Simulat
     page.click("#step")
     page.click("#play")
     until(lambda: not simulation.info.paused, "time to run")
+
+
+def test_the_probe_follows_a_pointer_that_is_faster_than_answers(
+    browser: Browser, server: ViewerServer, simulation: Simulation
+) -> None:
+    """The last place is asked for even if the pointer got there while an answer was on its way."""
+    simulation.change_scene("optical")
+    held: list[Callable[[], None]] = []
+    holds = True
+    opened = OpenPage(browser, "about:blank")
+
+    def between(page_side: WebSocketRoute) -> None:
+        server_side = page_side.connect_to_server()
+
+        def passed_on(message: str | bytes) -> None:
+            if holds and isinstance(message, str) and '"sequence"' in message:
+                held.append(lambda: page_side.send(message))
+            else:
+                page_side.send(message)
+
+        server_side.on_message(passed_on)
+
+    page = opened.page
+    page.route_web_socket("**/socket*", between)
+    page.goto(server.url)
+    opened.wait_for_frames()
+    simulation.pause()
+    opened.until(lambda: not changes(opened), "the last picture")
+    page.mouse.move(*opened.at(0.25, 0.25))
+    opened.until(lambda: held, "an answer")
+    page.mouse.move(*opened.at(0.75, 0.75))
+    expect(page.locator("#probe")).to_contain_text("Point at a picture")
+    holds = False
+    for send in held:
+        send()
+    expect(page.locator("#probe")).to_contain_text("120, 90")
+    simulation.resume()
+    opened.close()
 
 
 PAINTED = """() => {

@@ -135,19 +135,31 @@ export class Pointer {
     if (values) this.#actions.select(values.instance_id ?? 0);
   }
 
-  /** Show the values under the pointer, of the frame that is shown; one question at a time. */
+  /**
+   * Show the values under the pointer, of the frame that is shown. One question at a time: what
+   * came while one was on its way is asked next, as nothing else may happen where time stands.
+   */
   async #probe() {
-    const { frame } = this.#store.state;
-    if (!this.#at?.pixel || !frame || this.#asking || document.pointerLockElement) return;
+    if (this.#asking) return;
     this.#asking = true;
-    try {
-      const { u, v } = this.#at.pixel;
-      const values = await this.#actions.ask("probe", { frame: frame.number, u, v });
-      if (this.#at) this.#show(values, this.#at);
-    } catch {
-      // The frame is no longer kept; the next one is asked for.
+    for (let question = this.#question(), asked = ""; question && JSON.stringify(question) !== asked; ) {
+      asked = JSON.stringify(question);
+      try {
+        const values = await this.#actions.ask("probe", question);
+        if (this.#at) this.#show(values, this.#at);
+      } catch {
+        // The frame is no longer kept, and a newer one is there; or the connection was lost.
+      }
+      question = this.#question();
     }
     this.#asking = false;
+  }
+
+  /** @returns {{ frame: number, u: number, v: number } | null} */
+  #question() {
+    const { frame } = this.#store.state;
+    if (!this.#at?.pixel || !frame || document.pointerLockElement) return null;
+    return { frame: frame.number, u: this.#at.pixel.u, v: this.#at.pixel.v };
   }
 
   /** @param {PixelValues} values @param {Pointed} at */
