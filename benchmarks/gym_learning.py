@@ -31,6 +31,7 @@ import sailenv_ros.gym  # noqa: F401  # registers the environments
 from benchmarks.gym_direction_policy import DirectionPolicy
 from benchmarks.gym_search_policies import ScriptedSearch, Strider
 from benchmarks.gym_searcher import REACH_M, SIDE, Searcher
+from sailenv_ros.gym.room_store import shared_rooms
 
 UNSEEN_ROOMS = 4
 
@@ -89,7 +90,7 @@ PLANS: Mapping[str, Plan] = {
             "ent_coef": 0.01,
         },
         envs=16,
-        rooms=12,
+        rooms=32,
         rate=1e-3,
         wears_off=True,
         own={"most_steps": 100, "curiosity": 0.3},
@@ -248,6 +249,7 @@ def main() -> None:
     arguments = parser.parse_args()
     task, plan = arguments.task, PLANS[arguments.task]
     rooms, episodes = arguments.rooms or plan.rooms, arguments.episodes or plan.episodes
+    shared_rooms().most_rooms = rooms + UNSEEN_ROOMS  # each is entered again and again
     judged = make(task, "train", rooms)
     check_env(judged)
     raw = gymnasium.make(f"sailenv/{task}-v0", rooms=1)

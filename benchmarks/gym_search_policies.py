@@ -64,14 +64,14 @@ class Strider(gymnasium.Wrapper[Any, Any, Any, Any]):
         agent, total = self._agent, 0.0
         for one in steps_of(int(action)):
             before_m = agent.goal_m
-            seen, reward, terminated, truncated, info = agent.step(one)
+            reward, terminated, truncated, info = agent.act(one)
             self.taken += 1
             total += reward
             found = math.isinf(before_m) and math.isfinite(agent.goal_m)
             near = agent.goal_m < 0.95 * NEAR_M <= before_m
             if terminated or truncated or agent.stopped or found or near:
                 break
-        return seen, total, terminated, truncated, info
+        return agent.observed(), total, terminated, truncated, info
 
 
 def steps_of(decision: int) -> list[int]:

@@ -89,18 +89,28 @@ class Searcher(gymnasium.Wrapper[Any, Any, Any, Any]):
         """Begin an episode, in which nothing is known."""
         self._forget()
         seen, info = self.env.reset(**settings)
-        return self._remember(seen), info
+        self._remember(seen)
+        return self.observed(), info
 
     def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Act, and remember what is seen then."""
+        reward, terminated, truncated, info = self.act(action)
+        return self.observed(), reward, terminated, truncated, info
+
+    def act(self, action: Any) -> tuple[float, bool, bool, dict[str, Any]]:
+        """Do as `step` does, for those who decide nothing from what is observed now."""
         seen, reward, terminated, truncated, info = self.env.step(action)
         self._move(int(action), info["path_length_m"])
         before = np.count_nonzero(self._least_m <= EXAMINED_M)
-        observed = self._remember(seen)
+        self._remember(seen)
         if not len(self._goals):
             examined = int(np.count_nonzero(self._least_m <= EXAMINED_M)) - before
             reward = float(reward) + self._curiosity * examined * CELL_M**2
-        return observed, float(reward), terminated, truncated, info
+        return float(reward), terminated, truncated, info
+
+    def observed(self) -> NDArray[np.float32]:
+        """Return what it remembers."""
+        return np.concatenate([self._around(), self._goal, self._own()]).astype(np.float32)
 
     def _move(self, action: int, walked_m: float) -> None:
         stride_m = walked_m - self._walked_m
@@ -118,7 +128,7 @@ class Searcher(gymnasium.Wrapper[Any, Any, Any, Any]):
         self.action, self._walked_m = action, walked_m
         self.steps += 1
 
-    def _remember(self, seen: Any) -> NDArray[np.float32]:
+    def _remember(self, seen: Any) -> None:
         mask = (seen["category"] == seen["goal"]).ravel()
         depth_m = np.asarray(seen["depth"], np.float64).ravel()
         points, aside_m = self._points(depth_m)
@@ -129,7 +139,7 @@ class Searcher(gymnasium.Wrapper[Any, Any, Any, Any]):
         np.minimum.at(self._least_m, (rows, columns), aside_m[hit])
         self._goals = np.concatenate([self._goals, points[hit & mask]])[-MOST_POINTS:]
         self.goal_px = int(np.count_nonzero(mask))
-        return np.concatenate([self._around(), self._goal(), self._own()]).astype(np.float32)
+        self._goal = self._nearest_goal()
 
     def _points(self, depth_m: Reals) -> tuple[Reals, Reals]:
         """Return where pixels are (N, 3), and their horizontal distances."""
@@ -165,7 +175,7 @@ class Searcher(gymnasium.Wrapper[Any, Any, Any, Any]):
         # Near places are told apart more finely.
         return np.sqrt(np.minimum(around_m / REACH_M, 1.0)).ravel()
 
-    def _goal(self) -> Reals:
+    def _nearest_goal(self) -> Reals:
         """Return of the nearest of it: known, direction, distance twice, height, pixels, near."""
         self.goal_m, self.goal_angle, self.goal_down = math.inf, 0.0, 0.0
         if not len(self._goals):

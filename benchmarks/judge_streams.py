@@ -35,6 +35,7 @@ import numpy as np
 import yaml
 
 import sailenv_ros.streams as streams
+from sailenv_ros.system.memory import keep_freed_memory
 
 SEED = 11
 FIRST = 812_000
@@ -49,6 +50,9 @@ SIGNALS = ("red", "green", "blue", "red / blue")
 CLOCK, FRAMES = 32, 100_000
 DELTA = 0.002 / (FRAMES / CLOCK)
 """ADWIN's own settings are 32 and 0.002."""
+
+KEPT_BYTES = 2**20
+"""The largest block that is kept, as in a worker of `sailenv stream endless` [B]."""
 
 PLAIN: dict[str, Any] = {
     "version": 1,
@@ -184,6 +188,7 @@ def judge_avalanche(count: int) -> None:
     from avalanche.models import SimpleCNN
     from avalanche.training.supervised import Naive
 
+    keep_freed_memory(KEPT_BYTES)
     stream = streams.open("home", seed=SEED, views=("rgb", "category", "instance"))
     made = []
 
@@ -244,6 +249,7 @@ def judge_stillness(count: int, seed: int) -> None:
 
 def measure_memory(count: int) -> None:
     """Print the memory of this process after every 10,000 frames, of which few are made."""
+    keep_freed_memory(KEPT_BYTES)
     with streams.open("home", seed=21) as stream:
         for first in range(0, count, stream.course.episode):
             for number in (first, first + 2):

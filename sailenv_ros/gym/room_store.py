@@ -51,14 +51,15 @@ class RoomStore:
 
     Assets, meshes and textures are shared by all of them. Used by one thread.
 
-    Parameters
+    Attributes
     ----------
     most_rooms : int
-        That stay open though nobody is in them.
+        That stay open though nobody is in them. Opening one takes seconds, one that is open takes
+        some 100 MB.
     """
 
     def __init__(self, most_rooms: int = MOST_ROOMS) -> None:
-        self._most_rooms = most_rooms
+        self.most_rooms = most_rooms
         self._environments = 0
         self._rooms: dict[RoomOrder, Room] = {}
         self._clear()
@@ -89,7 +90,7 @@ class RoomStore:
         """Leave a room that was entered; it stays open until others were entered."""
         room.users -= 1
         empty = [order for order, one in self._rooms.items() if not one.users]
-        gone = empty[: max(0, len(self._rooms) - self._most_rooms)]
+        gone = empty[: max(0, len(self._rooms) - self.most_rooms)]
         for order in gone:
             self._rooms.pop(order).close()
         if gone:

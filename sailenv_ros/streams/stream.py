@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import threading
+import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -110,11 +112,41 @@ def open(
     )
 
 
+class _Players:
+    """What makes the frames of a stream and of its parts: one in each thread that asks for some."""
+
+    def __init__(self) -> None:
+        self._players: dict[tuple[int, int], Player] = {}
+        weakref.finalize(self, _close, self._players).atexit = False
+
+    @property
+    def current(self) -> Player | None:
+        """That of this thread of this process; the setter takes one that was made."""
+        return self._players.get((os.getpid(), threading.get_ident()))
+
+    @current.setter
+    def current(self, player: Player) -> None:
+        self._players[os.getpid(), threading.get_ident()] = player
+
+    def close(self) -> None:
+        """Free their simulations."""
+        _close(self._players)
+
+
+def _close(players: dict[tuple[int, int], Player]) -> None:
+    """Close those of this process; others belong to the one that this was forked from."""
+    while players:
+        (process, _), player = players.popitem()
+        if process == os.getpid():
+            player.close()
+
+
 class Stream(Sequence[Any]):
     """Frames by their numbers; see `open`.
 
-    Made by one thread. A process that was forked, or to which it was sent, makes a simulation of
-    its own. Going ahead is cheap, going back begins an episode again.
+    A thread, or a process that was forked or to which it was sent, makes a simulation of its own;
+    parts of a stream share that of the stream. Going ahead is cheap, going back begins an episode
+    again.
     """
 
     def __init__(
@@ -127,12 +159,13 @@ class Stream(Sequence[Any]):
         as_arrays: bool,
         variant: str = "",
         drift_at: int | None = None,
+        players: _Players | None = None,
     ) -> None:
         self._course, self._seed, self._views = course, seed, views
         self._frames, self._as_arrays = frames, as_arrays
         self._variant, self._drift_at = variant, drift_at
         self._plan = StreamPlan(course, seed, variant)
-        self._player: tuple[int, Player] | None = None
+        self._players = players or _Players()
 
     @property
     def course(self) -> Course:
@@ -165,7 +198,7 @@ class Stream(Sequence[Any]):
             If its room cannot be made or built.
         """
         if isinstance(place, slice):
-            return self._other(frames=self._frames[place])
+            return self._other(frames=self._frames[place], players=self._players)
         return self._made(self._frames[place])
 
     def __iter__(self) -> Iterator[Any]:
@@ -218,10 +251,8 @@ class Stream(Sequence[Any]):
         )
 
     def close(self) -> None:
-        """Free its simulation; the next frame makes another."""
-        if self._player is not None and self._player[0] == os.getpid():
-            self._player[1].close()
-        self._player = None
+        """Free its simulation, which its parts share; the next frame makes another."""
+        self._players.close()
 
     def __enter__(self) -> Stream:
         return self
@@ -251,10 +282,11 @@ class Stream(Sequence[Any]):
 
     def _frame(self, number: int) -> StreamFrame:
         place = self._plan.place(number)
-        if self._player is None or self._player[0] != os.getpid():
+        player = self._players.current
+        if player is None:
             player = Player(self._course, self._plan, self._seed, self._views, self._drift_at)
-            self._player = os.getpid(), player
-        frame, drift = self._player[1].frame(place)
+            self._players.current = player
+        frame, drift = player.frame(place)
         return StreamFrame(
             number=number,
             room=place.room,

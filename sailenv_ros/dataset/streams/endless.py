@@ -21,12 +21,16 @@ from sailenv_ros.recording.lockstep import FrameRecorder
 from sailenv_ros.simulation.generated_scenes import generation_state
 from sailenv_ros.streams import Course
 from sailenv_ros.streams.course import MOST_FRAMES
+from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.types.validation import checked_integer
 from sailenv_ros.types.views import checked_views
 
 __all__ = ["EndlessJob", "make_endless"]
 
 MOST_WORKERS = 256
+
+LARGEST_KEPT_BYTES = 2**20
+"""Of a worker's memory: more than what a frame of 256×256 is made of, less than a texture [B]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -162,6 +166,7 @@ class _PartMaker:
 
 def _maker(job: EndlessJob, output: str, on_frame: Callable[[], None]) -> Callable[[int], int]:
     """Return what makes parts in a worker, whose end frees all."""
+    keep_freed_memory(LARGEST_KEPT_BYTES)
     return _PartMaker(job, StreamFolder(Path(output), job.identity), on_frame).make
 
 

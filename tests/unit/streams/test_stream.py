@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import multiprocessing
 import pickle
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +18,7 @@ import sailenv_ros.streams as streams
 from sailenv_ros.errors import InvalidRequest, SceneError, UnknownName
 from sailenv_ros.streams import Course, Stream, StreamFrame
 from sailenv_ros.streams.plan import HABITS, StreamPlan
+from sailenv_ros.streams.player import Player
 
 ORDER = (29, 3, 4, 17, 16, 5, 98, 12, 12, 0, 30)
 """Ahead, back, across episodes and rooms, twice the same."""
@@ -85,6 +89,38 @@ def test_slices_are_streams(stream: Stream, in_order: dict[int, str]) -> None:
     part.close()
     with pytest.raises(IndexError):
         stream[100]
+
+
+def test_parts_of_a_stream_share_its_simulation(
+    course: Course, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One for all that a thread reads; with the last of them it is freed, closed or not."""
+    made, closed = [], []
+
+    class Counted(Player):
+        def __init__(self, *given: Any) -> None:
+            super().__init__(*given)
+            made.append(threading.get_ident())
+
+        def close(self) -> None:
+            closed.append(id(self))
+            super().close()
+
+    monkeypatch.setattr("sailenv_ros.streams.stream.Player", Counted)
+    whole = streams.open(course, length=100)
+    digests = [_bytes(frame) for first in (0, 12, 24) for frame in whole[first : first + 2]]
+    part = whole[24:26]
+    assert [_bytes(frame) for frame in part] == digests[4:]
+    assert (len(made), closed) == (1, [])
+    with ThreadPoolExecutor(1) as other:
+        assert other.submit(lambda: [_bytes(frame) for frame in part]).result() == digests[4:]
+    assert len(set(made)) == len(made) == 2
+    del whole
+    gc.collect()
+    assert not closed
+    del part
+    gc.collect()
+    assert len(set(closed)) == 2
 
 
 def test_seeds_make_different_streams(course: Course, in_order: dict[int, str]) -> None:
