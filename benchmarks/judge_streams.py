@@ -10,11 +10,11 @@
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
 shuffled. `avalanche` trains its `Naive` on experiences that are made when they are asked for.
-`drift` gives the mean colour of pictures to river's ADWIN as it comes: a camera that walks in one
-room, one drift at a time, which begins at a frame. `still` does so without any drift. ADWIN makes a
-test each 32 frames; its `delta`, the share of false alarms, is divided by the number of tests in
-100,000 frames (Bonferroni). `memory` makes two frames of each episode of `home`, and tells the
-memory of the process.
+`drift` gives simple statistics of frames to river's ADWIN as they come, see `SIGNALS`: a camera
+that walks in one room, one drift at a time, which begins at a frame. `still` does so without any
+drift. ADWIN makes a test each 32 frames; its `delta`, the share of false alarms, is divided by the
+number of tests in 100,000 frames (Bonferroni). `memory` makes two frames of each episode of `home`,
+and tells the memory of the process.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -45,7 +45,10 @@ ONSET, BEFORE, AFTER = 20_000, 5_000, 1_500
 WITHIN = 1_000
 """A drift is found if ADWIN tells it within so many frames of its onset."""
 
-SIGNALS = ("red", "green", "blue", "red / blue")
+APPEARS = "bathtub"
+
+SIGNALS = ("red", "green", "blue", "red / blue", "floor", APPEARS)
+"""Mean colours of a picture, and shares of its pixels that are of a category."""
 
 CLOCK, FRAMES = 32, 100_000
 DELTA = 0.002 / (FRAMES / CLOCK)
@@ -82,7 +85,7 @@ DRIFTS: dict[str, dict[str, Any]] = {
     "vignetting": _sensor("vignetting", 0.0, 1.0),
     "wear": {"wear": {"onset": ONSET - 1, "over": 1, "most": 1}},
     "mount": {"mount": {"onset": ONSET, "every": 1_000_000, "turn": 15, "shift": 0.1, "zoom": 0.3}},
-    "classes": {"classes": [{"category": "bathtub", "begin": ONSET}]},
+    "classes": {"classes": [{"category": APPEARS, "begin": ONSET}]},
 }
 """One drift each, from `ONSET` on."""
 
@@ -265,10 +268,19 @@ def _signals(course: dict[str, Any], seed: int, begin: int, end: int) -> dict[st
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "course.yaml"
         path.write_text(yaml.safe_dump(course))
-        with streams.open(path, seed=seed, views=("rgb",)) as stream:
-            means = [frame["rgb"].mean(axis=(0, 1)) for frame in stream[begin:end]]
-    red, green, blue = np.array(means).T / 255.0
-    return dict(zip(SIGNALS, (red, green, blue, red / blue / 4.0), strict=True))
+        with streams.open(path, seed=seed, views=("rgb", "category")) as stream:
+            told = [(frame["rgb"].mean(axis=(0, 1)), _shares(frame)) for frame in stream[begin:end]]
+    red, green, blue = np.array([colours for colours, _ in told]).T / 255.0
+    values = red, green, blue, red / blue / 4.0, *np.array([shares for _, shares in told]).T
+    return dict(zip(SIGNALS, values, strict=True))
+
+
+def _shares(frame: streams.StreamFrame) -> list[float]:
+    """Return the shares of pixels that are floor, and of the category that appears."""
+    info = frame.frame.info
+    assert info is not None
+    ids = [info.categories.named(name).id for name in ("floor", APPEARS)]
+    return [float((frame["category"] == one).mean()) for one in ids]
 
 
 def _changes(values: np.ndarray) -> list[int]:

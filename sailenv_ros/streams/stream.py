@@ -113,7 +113,7 @@ def open(
 
 
 class _Players:
-    """What makes the frames of a stream and of its parts: one in each thread that asks for some."""
+    """Players of a stream and of its parts: one in each thread that asks for frames."""
 
     def __init__(self) -> None:
         self._players: dict[tuple[int, int], Player] = {}

@@ -36,6 +36,9 @@ __all__ = [
 REST_S = 0.5
 """Simulated time for which something must stay where it was put to count as resting [s]."""
 
+STEADY_STEP_M, STEADY_STEP = 1e-3, 1.0 / 512.0
+"""Steps of `steady_poses` along and about axes."""
+
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class DrawnInstance:
@@ -208,6 +211,16 @@ class WorldSnapshot:
         if self.velocities is not None:
             moving |= self.velocities.any(axis=(1, 2))
         return moving if self.settling is None else moving | self.settling
+
+
+def steady_poses(poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return poses (N, 4, 4) in steps that cannot be seen: what comes to rest creeps for seconds.
+
+    Rounded, rather than kept until they are too far off: no picture depends on those before it.
+    """
+    steady = np.round(poses / STEADY_STEP) * STEADY_STEP
+    steady[:, :3, 3] = np.round(poses[:, :3, 3] / STEADY_STEP_M) * STEADY_STEP_M
+    return steady + 0.0  # no zero has a sign
 
 
 class AdaptedExposure(NamedTuple):

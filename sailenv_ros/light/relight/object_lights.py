@@ -24,12 +24,9 @@ from sailenv_ros.light.relight.quality import FINE, QUICK
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.types.baked_light import ObjectLight
-from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot
+from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot, steady_poses
 
 __all__ = ["ObjectLights", "can_be_lit", "movable_objects", "with_object_light"]
-
-STEP_M, STEP = 1e-3, 1.0 / 512.0
-"""Places are rounded to these, along and about axes: what comes to rest creeps for seconds."""
 
 NEAR_M = 0.25
 """Things whose balls are farther apart neither shade nor light each other [m]."""
@@ -181,10 +178,7 @@ def _chosen(things: list[PlacedObject]) -> list[int]:
 
 def _steady(thing: PlacedObject) -> PlacedObject:
     """Return an object at a place that small motions do not change."""
-    pose = np.round(thing.world_from_body / STEP) * STEP
-    pose[:3, 3] = np.round(thing.world_from_body[:3, 3] / STEP_M) * STEP_M
-    # No zero has a sign.
-    return replace(thing, world_from_body=pose + 0.0)
+    return replace(thing, world_from_body=steady_poses(thing.world_from_body[None])[0])
 
 
 def _near(things: list[PlacedObject]) -> list[list[int]]:

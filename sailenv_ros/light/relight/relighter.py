@@ -182,13 +182,19 @@ class Relighter:
         if not key:
             self._light = None
             return
-        if self._light is None or self._light.key != key:
-            since_ns = snapshot.sim_time_ns if changed_ns is None else changed_ns
-            rested = lockstep and snapshot.sim_time_ns - since_ns >= REST_NS
+        now_ns, shown = snapshot.sim_time_ns, self._light
+        since_ns = changed_ns
+        if since_ns is None:
+            since_ns = now_ns if shown is None or shown.key != key else shown.since_ns
+        rested = lockstep and now_ns - since_ns >= REST_NS
+        if shown is None or shown.key != key or (lockstep and shown.refined and not rested):
+            # The last is for what has moved and is back where it was.
             light = self._relit(FINE if rested else QUICK)
             self._light = _Relit(key, light, refined=rested, since_ns=since_ns)
-        elif not self._light.refined:
-            self._refine(self._light, snapshot, lockstep=lockstep)
+            return
+        shown.since_ns = since_ns
+        if not shown.refined:
+            self._refine(shown, snapshot, lockstep=lockstep)
 
     def _light_on_objects(
         self, snapshot: WorldSnapshot, *, lockstep: bool

@@ -15,7 +15,12 @@ from numpy.typing import NDArray
 
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.lights import Light
-from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
+from sailenv_ros.types.snapshot import (
+    DrawnInstance,
+    SceneContents,
+    WorldSnapshot,
+    steady_poses,
+)
 
 __all__ = ["SIZE_PX", "ShadowPlan", "ShadowRedraw", "casts"]
 
@@ -27,10 +32,6 @@ receive shadows and cast none: they would stretch the shadow map to their own si
 FARTHEST_M = 1e5
 
 SIZE_PX = 1024
-
-STEADY_TEXELS = 0.125
-"""A caster that has moved by less since the map was drawn is taken to stand where it stood: what
-comes to rest creeps for seconds, by less than can be seen, and needs no new map."""
 
 
 def casts(drawn: DrawnInstance) -> bool:
@@ -127,7 +128,7 @@ class ShadowPlan:
             a map that follows them changes its texels' places, and so every shadow's edge.
         """
         self._follow(snapshot.contents)
-        poses = self._steady(snapshot)
+        poses = _steady(snapshot)
         everything = np.ones(len(poses), bool)
         casting = everything if casting is None else casting
         framed = everything if framed is None else framed
@@ -200,18 +201,6 @@ class ShadowPlan:
         # The number of a model is unique only while it lives: the contents keep it.
         self._contents, self._keys = contents, keys
 
-    def _steady(self, snapshot: WorldSnapshot) -> NDArray[np.float64]:
-        """Return the poses of casters, as they were drawn last where that is near enough."""
-        poses = snapshot.world_from_body
-        if not self._direction:
-            return poses
-        off = np.abs(poses - self._poses)
-        # No point of it has moved by more.
-        reach = self._spheres.reaches(snapshot.contents)
-        most = off[:, :3, 3].sum(axis=1) + reach * off[:, :3, :3].sum(axis=(1, 2))
-        near = most <= STEADY_TEXELS * self.texel_m
-        return np.where(near[:, None, None], self._poses, poses)
-
     def _fit(
         self,
         light: Light,
@@ -241,6 +230,14 @@ class ShadowPlan:
         if len(rest) != len(casting) or (rest & ~casting).any():
             return True
         return not np.array_equal(self._poses[rest], self._rest_poses[rest])
+
+
+def _steady(snapshot: WorldSnapshot) -> NDArray[np.float64]:
+    """Return poses; of what moves those in steps, so that few of them need a new map."""
+    poses, moving = snapshot.world_from_body, snapshot.moving
+    if not moving.any():
+        return poses
+    return np.where(moving[:, None, None], steady_poses(poses), poses)
 
 
 def _key(drawn: DrawnInstance) -> tuple[object, ...]:
@@ -293,12 +290,6 @@ class _Spheres:
         self._know(contents)
         centres = (poses[:, :3, :3] @ self._middles[:, :, None])[:, :, 0] + poses[:, :3, 3]
         return centres, self._radii
-
-    def reaches(self, contents: SceneContents) -> NDArray[np.float64]:
-        """Return (N,): how far spheres reach from their bodies' origins [m]."""
-        self._know(contents)
-        reaches: NDArray[np.float64] = np.linalg.norm(self._middles, axis=1) + self._radii
-        return reaches
 
     def _know(self, contents: SceneContents) -> None:
         if self._instances is contents.instances:

@@ -91,6 +91,19 @@ def test_in_lockstep_light_is_refined_after_simulated_time(
     assert worked == ["quick", "fine"]
 
 
+def test_what_moved_between_two_frames_counts_too(baked: WorldSnapshot, worked: list[str]) -> None:
+    """Away and back in no picture: light is that of whoever has seen it, rough until it rests."""
+    relighter = Relighter()
+    for time_s, changed_s in ((1.0, 0.0), (2.1, 2.0), (2.4, 2.0), (2.6, 2.0)):
+        relighter.lit(
+            at(baked, -0.5, round(time_s * SECOND_NS)),
+            wanted=True,
+            lockstep=True,
+            changed_ns=round(changed_s * SECOND_NS),
+        )
+    assert worked == ["fine", "quick", "fine"]
+
+
 def test_in_real_time_light_is_refined_beside(baked: WorldSnapshot, worked: list[str]) -> None:
     """On another thread; the frame after its end shows it."""
     relighter = Relighter()

@@ -1,0 +1,230 @@
+"""Makes a million frames of a stream without an end, keeps their sums alone, and looks at the rest.
+
+    python benchmarks/endless_run.py make FILE [--frames N] [--smooth] [--kills N] [--seed N]
+    python benchmarks/endless_run.py check FILE
+
+`make` has two processes make the parts of the stream and writes a line into FILE for each that is
+whole: the SHA-256 of its frames, those of some frames of their own, memory and time. All its
+processes are ended by SIGKILL at random moments of the first fifth, and begun again; later calls go
+on, too. `check` counts the parts, makes 200 random frames by their numbers in a process that has
+made none, and tells speed and memory of what ran undisturbed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import sailenv_ros.streams as streams
+from sailenv_ros.dataset.worker_pool import WorkerPool
+from sailenv_ros.streams.course import Course, load_course
+from sailenv_ros.system.memory import keep_freed_memory
+
+PART, CHECKED = 500, 200
+KEPT_BYTES = 2**20
+"""As in a worker of `sailenv stream endless` [B]."""
+
+POLL_S = 0.5
+WARM_FRAMES = 10_000
+"""Memory is compared with that after so many frames of the stream."""
+
+WINDOW = 100_000
+"""Frames in which the greatest memory is looked for: all rooms are visited."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """What is made: the first frames of `home`, at 256×256 unless its course says else."""
+
+    frames: int
+    smooth: bool
+    seed: int
+    kills: int
+
+    @property
+    def parts(self) -> int:
+        """Number of parts."""
+        return -(-self.frames // PART)
+
+    @property
+    def course(self) -> Course:
+        """The course, with smooth edges or without."""
+        home = load_course("home")
+        picture = home.eye.picture.model_copy(update={"smooth_edges": self.smooth})
+        return home.model_copy(update={"eye": home.eye.model_copy(update={"picture": picture})})
+
+    def open(self) -> streams.Stream:
+        """Open the stream."""
+        return streams.open(self.course, seed=self.seed, length=self.frames)
+
+    @property
+    def checked(self) -> frozenset[int]:
+        """Numbers of the frames that are compared with those by number."""
+        dice = np.random.default_rng(self.seed)
+        return frozenset(
+            dice.choice(self.frames, min(CHECKED, self.frames), replace=False).tolist()
+        )
+
+
+class _PartMaker:
+    """Makes parts in a worker."""
+
+    def __init__(self, run: Run, on_frame: Callable[[], None]) -> None:
+        keep_freed_memory(KEPT_BYTES)
+        self._run, self._on_frame = run, on_frame
+        self._stream, self._checked = run.open(), run.checked
+
+    def make(self, part: int) -> dict[str, Any]:
+        """Make the frames of a part; return its line."""
+        begin_s, whole, single = time.time(), hashlib.sha256(), {}
+        for frame in self._stream[part * PART : (part + 1) * PART]:
+            digest = _digest(frame)
+            whole.update(digest)
+            if frame.number in self._checked:
+                single[str(frame.number)] = digest.hex()
+            self._on_frame()
+        return {
+            "part": part, "sha256": whole.hexdigest(), "single": single, "process": os.getpid(),
+            "begin_s": begin_s, "end_s": time.time(), "rss_mib": _rss_mib(),
+        }  # fmt: skip
+
+
+def _maker(run: Run, on_frame: Callable[[], None]) -> Callable[[int], dict[str, Any]]:
+    return _PartMaker(run, on_frame).make
+
+
+def _digest(frame: streams.StreamFrame) -> bytes:
+    digest = hashlib.sha256()
+    for name, view in sorted(frame.views.items()):
+        digest.update(name.encode())
+        digest.update(np.ascontiguousarray(view).data)
+    return digest.digest()
+
+
+def _rss_mib() -> float:
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def main() -> int:
+    """Make or check; 0 if all is as it should be."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    actions = parser.add_subparsers(dest="action", required=True)
+    for name in ("make", "work"):
+        action = actions.add_parser(name)
+        action.add_argument("file", type=Path)
+        action.add_argument("--frames", type=int, default=1_000_000)
+        action.add_argument("--smooth", action="store_true", help="with smooth edges")
+        action.add_argument("--kills", type=int, default=10)
+        action.add_argument("--seed", type=int, default=31)
+    check = actions.add_parser("check")
+    check.add_argument("file", type=Path)
+    options = parser.parse_args()
+    if options.action == "check":
+        return _check(options.file)
+    run = Run(frames=options.frames, smooth=options.smooth, seed=options.seed, kills=options.kills)
+    return _work(options.file, run) if options.action == "work" else _make(options.file, run)
+
+
+def _make(file: Path, run: Run) -> int:
+    """Have it made, and end all processes at random moments."""
+    if not file.exists():
+        file.write_text(json.dumps(asdict(run)) + "\n")
+    dice = random.Random(run.seed)
+    moments = sorted(dice.sample(range(run.parts // 5 or 1), min(run.kills, run.parts // 5)))
+    given = ["--frames", run.frames, "--seed", run.seed, "--kills", run.kills]
+    command = [sys.executable, __file__, "work", str(file), *map(str, given)]
+    command += ["--smooth"] if run.smooth else []
+    for moment in (*moments, None):
+        if moment is not None and len(list(_lines(file))) > moment:
+            continue
+        process = subprocess.Popen(command, start_new_session=True)
+        while process.poll() is None:
+            time.sleep(POLL_S)
+            if moment is not None and len(list(_lines(file))) > moment:
+                time.sleep(dice.uniform(0.0, 5.0))
+                os.killpg(process.pid, signal.SIGKILL)
+                print(f"killed with {len(list(_lines(file)))} parts", flush=True)
+                process.wait()
+                break
+        if moment is None and process.returncode:
+            return process.returncode
+    return 0
+
+
+def _work(file: Path, run: Run) -> int:
+    done = {line["part"] for line in _lines(file)}
+    missing = [part for part in range(run.parts) if part not in done]
+    pool = WorkerPool(workers=2, maker=_maker, arguments=(run,), piece="part")
+    with file.open("r+b") as out:
+        out.truncate(_whole(file))  # a line that was being written
+        out.seek(0, os.SEEK_END)
+        for line in pool.run(missing, lambda made: None):
+            out.write(json.dumps(line).encode() + b"\n")
+            out.flush()
+            os.fsync(out.fileno())
+    return 0
+
+
+def _whole(file: Path) -> int:
+    return file.read_bytes().rfind(b"\n") + 1
+
+
+def _lines(file: Path) -> Iterator[dict[str, Any]]:
+    for line in file.read_bytes()[: _whole(file)].splitlines()[1:]:
+        yield json.loads(line)
+
+
+def _check(file: Path) -> int:
+    run = Run(**json.loads(file.read_text().splitlines()[0]))
+    lines = list(_lines(file))
+    parts = sorted(line["part"] for line in lines)
+    whole = parts == list(range(run.parts))
+    print(f"{run.frames:,} frames: {len(parts)} parts, each once: {whole}")
+    single = {int(n): digest for line in lines for n, digest in line["single"].items()}
+    with run.open() as stream:
+        same = sum(_digest(stream[number]).hex() == single[number] for number in sorted(single))
+    print(f"{same} of {len(single)} random frames are the same by their numbers")
+    last = {line["process"] for line in sorted(lines, key=lambda line: line["end_s"])[-2:]}
+    undisturbed = [line for line in lines if line["process"] in last]
+    _tell_speed(undisturbed)
+    _tell_memory(undisturbed)
+    return 0 if whole and same == len(single) == min(CHECKED, run.frames) else 1
+
+
+def _tell_speed(lines: Sequence[dict[str, Any]]) -> None:
+    begin_s, end_s = (
+        choose(line[key] for line in lines) for choose, key in ((min, "begin_s"), (max, "end_s"))
+    )
+    made = PART * len(lines)
+    print(f"{made:,} undisturbed, {made / (end_s - begin_s):.1f} a second")
+
+
+def _tell_memory(lines: Sequence[dict[str, Any]]) -> None:
+    for process in sorted({line["process"] for line in lines}):
+        own = [line for line in lines if line["process"] == process]
+        own.sort(key=lambda line: line["part"])
+        each = WINDOW // PART // 2
+        most = [
+            round(max(line["rss_mib"] for line in own[place : place + each]))
+            for place in range(WARM_FRAMES // PART, len(own), each)
+        ]
+        print(f"process {process}: most memory in each {WINDOW:,} frames: {most} MiB")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
