@@ -47,7 +47,7 @@ WINDOW = 100_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
-    """What is made: the first frames of `home`, at 256×256 unless its course says else."""
+    """The first frames of `home`."""
 
     frames: int
     smooth: bool
