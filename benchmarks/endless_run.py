@@ -1,7 +1,7 @@
 """Makes a million frames of a stream without an end, keeps their sums alone, and looks at the rest.
 
-    python benchmarks/endless_run.py make FILE [--frames N] [--smooth] [--kills N] [--seed N]
-    python benchmarks/endless_run.py check FILE
+    python -m benchmarks.endless_run make FILE [--frames N] [--smooth] [--kills N] [--seed N]
+    python -m benchmarks.endless_run check FILE
 
 `make` has two processes make the parts of the stream and writes a line into FILE for each that is
 whole: the SHA-256 of its frames, those of some frames of their own, memory and time. All its
@@ -29,13 +29,13 @@ from typing import Any
 import numpy as np
 
 import sailenv_ros.streams as streams
+from benchmarks.judge_streams import digest_of, resident_mib
+from sailenv_ros.dataset.streams.endless import LARGEST_KEPT_BYTES
 from sailenv_ros.dataset.worker_pool import WorkerPool
 from sailenv_ros.streams.course import Course, load_course
 from sailenv_ros.system.memory import keep_freed_memory
 
 PART, CHECKED = 500, 200
-KEPT_BYTES = 2**20
-"""As in a worker of `sailenv stream endless` [B]."""
 
 POLL_S = 0.5
 WARM_FRAMES = 10_000
@@ -79,43 +79,25 @@ class Run:
         )
 
 
-class _PartMaker:
-    """Makes parts in a worker."""
+def _maker(run: Run, on_frame: Callable[[], None]) -> Callable[[int], dict[str, Any]]:
+    """Return what makes a part, and its line, in a worker."""
+    keep_freed_memory(LARGEST_KEPT_BYTES)
+    stream, checked = run.open(), run.checked
 
-    def __init__(self, run: Run, on_frame: Callable[[], None]) -> None:
-        keep_freed_memory(KEPT_BYTES)
-        self._run, self._on_frame = run, on_frame
-        self._stream, self._checked = run.open(), run.checked
-
-    def make(self, part: int) -> dict[str, Any]:
-        """Make the frames of a part; return its line."""
+    def make(part: int) -> dict[str, Any]:
         begin_s, whole, single = time.time(), hashlib.sha256(), {}
-        for frame in self._stream[part * PART : (part + 1) * PART]:
-            digest = _digest(frame)
-            whole.update(digest)
-            if frame.number in self._checked:
-                single[str(frame.number)] = digest.hex()
-            self._on_frame()
+        for frame in stream[part * PART : (part + 1) * PART]:
+            digest = digest_of(frame)
+            whole.update(digest.encode())
+            if frame.number in checked:
+                single[str(frame.number)] = digest
+            on_frame()
         return {
             "part": part, "sha256": whole.hexdigest(), "single": single, "process": os.getpid(),
-            "begin_s": begin_s, "end_s": time.time(), "rss_mib": _rss_mib(),
+            "begin_s": begin_s, "end_s": time.time(), "rss_mib": resident_mib(),
         }  # fmt: skip
 
-
-def _maker(run: Run, on_frame: Callable[[], None]) -> Callable[[int], dict[str, Any]]:
-    return _PartMaker(run, on_frame).make
-
-
-def _digest(frame: streams.StreamFrame) -> bytes:
-    digest = hashlib.sha256()
-    for name, view in sorted(frame.views.items()):
-        digest.update(name.encode())
-        digest.update(np.ascontiguousarray(view).data)
-    return digest.digest()
-
-
-def _rss_mib() -> float:
-    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+    return make
 
 
 def main() -> int:
@@ -124,31 +106,33 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     actions = parser.add_subparsers(dest="action", required=True)
-    for name in ("make", "work"):
-        action = actions.add_parser(name)
+    make = actions.add_parser("make")
+    make.add_argument("--frames", type=int, default=1_000_000)
+    make.add_argument("--smooth", action="store_true", help="with smooth edges")
+    make.add_argument("--kills", type=int, default=10)
+    make.add_argument("--seed", type=int, default=31)
+    for action in (make, actions.add_parser("work"), actions.add_parser("check")):
         action.add_argument("file", type=Path)
-        action.add_argument("--frames", type=int, default=1_000_000)
-        action.add_argument("--smooth", action="store_true", help="with smooth edges")
-        action.add_argument("--kills", type=int, default=10)
-        action.add_argument("--seed", type=int, default=31)
-    check = actions.add_parser("check")
-    check.add_argument("file", type=Path)
     options = parser.parse_args()
-    if options.action == "check":
-        return _check(options.file)
+    if options.action != "make":
+        return (_work if options.action == "work" else _check)(options.file, _run_of(options.file))
     run = Run(frames=options.frames, smooth=options.smooth, seed=options.seed, kills=options.kills)
-    return _work(options.file, run) if options.action == "work" else _make(options.file, run)
+    if not options.file.exists():
+        options.file.write_text(json.dumps(asdict(run)) + "\n")
+    elif _run_of(options.file) != run:
+        parser.error(f"{options.file} is of another run")
+    return _make(options.file, run)
+
+
+def _run_of(file: Path) -> Run:
+    return Run(**json.loads(file.read_text().splitlines()[0]))
 
 
 def _make(file: Path, run: Run) -> int:
     """Have it made, and end all processes at random moments."""
-    if not file.exists():
-        file.write_text(json.dumps(asdict(run)) + "\n")
     dice = random.Random(run.seed)
     moments = sorted(dice.sample(range(run.parts // 5 or 1), min(run.kills, run.parts // 5)))
-    given = ["--frames", run.frames, "--seed", run.seed, "--kills", run.kills]
-    command = [sys.executable, __file__, "work", str(file), *map(str, given)]
-    command += ["--smooth"] if run.smooth else []
+    command = [sys.executable, "-m", "benchmarks.endless_run", "work", str(file)]
     for moment in (*moments, None):
         if moment is not None and len(list(_lines(file))) > moment:
             continue
@@ -189,15 +173,14 @@ def _lines(file: Path) -> Iterator[dict[str, Any]]:
         yield json.loads(line)
 
 
-def _check(file: Path) -> int:
-    run = Run(**json.loads(file.read_text().splitlines()[0]))
+def _check(file: Path, run: Run) -> int:
     lines = list(_lines(file))
     parts = sorted(line["part"] for line in lines)
     whole = parts == list(range(run.parts))
     print(f"{run.frames:,} frames: {len(parts)} parts, each once: {whole}")
     single = {int(n): digest for line in lines for n, digest in line["single"].items()}
     with run.open() as stream:
-        same = sum(_digest(stream[number]).hex() == single[number] for number in sorted(single))
+        same = sum(digest_of(stream[number]) == single[number] for number in sorted(single))
     print(f"{same} of {len(single)} random frames are the same by their numbers")
     last = {line["process"] for line in sorted(lines, key=lambda line: line["end_s"])[-2:]}
     undisturbed = [line for line in lines if line["process"] in last]

@@ -35,6 +35,7 @@ import numpy as np
 import yaml
 
 import sailenv_ros.streams as streams
+from sailenv_ros.dataset.streams.endless import LARGEST_KEPT_BYTES
 from sailenv_ros.system.memory import keep_freed_memory
 
 SEED = 11
@@ -53,9 +54,6 @@ SIGNALS = ("red", "green", "blue", "red / blue", "floor", APPEARS)
 CLOCK, FRAMES = 32, 100_000
 DELTA = 0.002 / (FRAMES / CLOCK)
 """ADWIN's own settings are 32 and 0.002."""
-
-KEPT_BYTES = 2**20
-"""The largest block that is kept, as in a worker of `sailenv stream endless` [B]."""
 
 PLAIN: dict[str, Any] = {
     "version": 1,
@@ -132,7 +130,7 @@ def judge_seeking(count: int) -> None:
     wanted = set(numbers.tolist())
     with streams.open("home", seed=SEED) as stream:
         played = {
-            frame.number: _digest(frame)
+            frame.number: digest_of(frame)
             for frame in stream[FIRST : FIRST + spread]
             if frame.number in wanted
         }
@@ -151,12 +149,13 @@ def _sought(numbers: Sequence[int]) -> tuple[dict[int, str], list[float]]:
     with streams.open("home", seed=SEED) as stream:
         for number in numbers:
             begin_s = time.monotonic()
-            found[number] = _digest(stream[number])
+            found[number] = digest_of(stream[number])
             seconds.append(time.monotonic() - begin_s)
     return found, seconds
 
 
-def _digest(frame: Any) -> str:
+def digest_of(frame: Any) -> str:
+    """Return the SHA-256 of a frame's views, in hexadecimal digits."""
     digest = hashlib.sha256()
     for name, view in sorted(frame.views.items()):
         digest.update(name.encode() + np.ascontiguousarray(view).tobytes())
@@ -191,7 +190,7 @@ def judge_avalanche(count: int) -> None:
     from avalanche.models import SimpleCNN
     from avalanche.training.supervised import Naive
 
-    keep_freed_memory(KEPT_BYTES)
+    keep_freed_memory(LARGEST_KEPT_BYTES)
     stream = streams.open("home", seed=SEED, views=("rgb", "category", "instance"))
     made = []
 
@@ -252,15 +251,19 @@ def judge_stillness(count: int, seed: int) -> None:
 
 def measure_memory(count: int) -> None:
     """Print the memory of this process after every 10,000 frames, of which few are made."""
-    keep_freed_memory(KEPT_BYTES)
+    keep_freed_memory(LARGEST_KEPT_BYTES)
     with streams.open("home", seed=21) as stream:
         for first in range(0, count, stream.course.episode):
             for number in (first, first + 2):
                 stream[number]
             if first % 10_000 == 0:
-                pages = int(Path("/proc/self/statm").read_text().split()[1])
-                mib = pages * resource.getpagesize() / 2**20
-                print(f"frame {first}: {mib:.0f} MiB", flush=True)
+                print(f"frame {first}: {resident_mib():.0f} MiB", flush=True)
+
+
+def resident_mib() -> float:
+    """Return the memory of this process [MiB]."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * resource.getpagesize() / 2**20
 
 
 def _signals(course: dict[str, Any], seed: int, begin: int, end: int) -> dict[str, np.ndarray]:

@@ -106,7 +106,7 @@ def test_a_body_casts_a_shadow_where_the_sun_is_hidden(render: Render) -> None:
 def test_shadows_follow_what_creeps(
     make_renderer: Callable[[], RenderBackend], renderer: RenderBackend
 ) -> None:
-    """Steps too small to be seen add up: after each the picture is that of a new renderer."""
+    """Steps too small to be seen add up: the picture is always that of a new renderer."""
     floor = Thing(model_of(wall_mesh(8, 8)), Pose.from_rpy_deg((4.0, 0, -1.0), (0, 90, 0)))
     box = Thing(model_of(box_mesh(0.8)), Pose((4.0, 0.0, 0.4)))
     sun = Light(name="sun", type="directional", direction=(0.0, 0.5, -1.0), intensity=1.5)
@@ -121,7 +121,7 @@ def test_shadows_follow_what_creeps(
         return by.render(snapshot, None, camera, ["rgb"]).views["rgb"].astype(np.int16)
 
     first = picture(renderer, 0.0)
-    for step in range(1, 300):
+    for step in range(1, 430):
         last = picture(renderer, 0.7e-3 * step)
         if step % 60 == 59:
             fresh = make_renderer()
@@ -130,7 +130,7 @@ def test_shadows_follow_what_creeps(
             finally:
                 fresh.close()
             assert np.array_equal(last, wanted)
-    assert (np.abs(first - last).max(axis=-1) > 20).mean() > 0.01
+    assert (np.abs(first - last).max(axis=-1) > 20).mean() > 0.02
 
 
 def test_a_texture_is_neither_mirrored_nor_upside_down(render: Render) -> None:
