@@ -200,7 +200,7 @@ class Drawing(_Scratch):
         changed : (ceil(S / 16),) uint8
             1 for each 16 rows in which the map may differ from `resting`; updated.
         resting : float32 array like `nearness`, or None
-            What the map begins as; None begins with an empty one.
+            What the map begins as, the map itself, too; None begins with an empty one.
         """
         checked("map_from_world", map_from_world, np.float64, (4, 4))
         checked("instances", instances, INSTANCES, (1,))

@@ -96,7 +96,7 @@ LIGHT = structure(
     ("background_plain", "<i4"),
     ("sky_map_at", ADDRESS),
     ("sky_width sky_height", "<i4"),
-    ("exposure", "<f4"),
+    ("sky_factor exposure", "<f4"),
     ("lamp_count", "<i4"),
     ("lamps_at", ADDRESS),
     ("baked reflecting", "<i4"),

@@ -15,7 +15,7 @@ from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.assets.skies import load_sky, sky_files
 from sailenv_ros.errors import AssetError, UnknownName
 from sailenv_ros.render.contract import RenderBackend
-from sailenv_ros.render.scene.seen_sky import FINER, SkyLook, seen_sky
+from sailenv_ros.render.scene.seen_sky import FINER, seen_sky
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.geometry import Pose, look_at
@@ -172,23 +172,19 @@ def test_only_what_is_bright_is_blended(exposure: float) -> None:
         (5.0, 0.6, 0.63),
         (80.0, 0.6, 0.63),
     ):
-        seen = seen_sky(_sky(_even(exposed / 2.0**exposure)), SkyLook(exposure, 1.0)).astype(
-            np.float64
-        )
+        seen = seen_sky(_sky(_even(exposed / 2.0**exposure)), exposure).astype(np.float64)
         assert seen.shape == (64 * FINER, 128 * FINER, 3)
         assert low * 0.99 <= seen.min() * 2.0**exposure
         assert seen.max() * 2.0**exposure <= high * 1.01
     ramp = _even(1.0) * np.geomspace(0.01, 50.0, 128)[None, :, None].astype(np.float16)
-    assert (
-        seen_sky(_sky(ramp.astype(np.float16)), SkyLook(exposure, 1.0)).max() * 2.0**exposure < 1.0
-    )
+    assert seen_sky(_sky(ramp.astype(np.float16)), exposure).max() * 2.0**exposure < 1.0
 
 
 def test_fine_differences_of_what_is_bright_stay() -> None:
     """Twigs that take a fifth of a white sky's light stay as dark against it."""
     radiance = _even(4.0)
     radiance[:, ::8] = radiance[:, 1::8] = 3.2
-    seen = seen_sky(_sky(radiance), SkyLook(1.0, 1.0)).astype(np.float64)[32, 32:-32, 1]
+    seen = seen_sky(_sky(radiance), 1.0).astype(np.float64)[32, 32:-32, 1]
     assert seen.max() / seen.min() > 4.0 / 3.2
     unchanged = seen_sky(_sky(radiance)).astype(np.float64)
     assert unchanged.mean() == pytest.approx(float(radiance.mean(dtype=np.float64)), rel=0.01)
@@ -200,9 +196,7 @@ def test_a_sky_that_was_kept_is_the_one_that_is_made(
     """On disk by its content and exposure."""
     monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
     ramp = (_even(1.0) * np.geomspace(0.01, 50.0, 128)[None, :, None]).astype(np.float16)
-    made, read, other = (
-        seen_sky(_sky(ramp), SkyLook(exposure, 1.0)) for exposure in (1.0, 1.0, 2.0)
-    )
+    made, read, other = (seen_sky(_sky(ramp), exposure) for exposure in (1.0, 1.0, 2.0))
     assert len(list((tmp_path / "arrays").glob("sky-*"))) == 2
     np.testing.assert_array_equal(made, read)
     assert (other != read).any()

@@ -33,7 +33,7 @@ from sailenv_ros.render.scene.lightmap_compositing import (
 from sailenv_ros.render.scene.outside_light import shown_outside
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import RoomReflections, Share
-from sailenv_ros.render.scene.seen_sky import AS_IT_IS, SkyLook, seen_sky, sky_look
+from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.render.scene.shadow_plan import SIZE_PX, ShadowPlan
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.lights import Light, SkyMap, lamp_rows
@@ -90,7 +90,8 @@ class ShadowMap:
                 self._resting = _empty_map()
             self._changed[:] = 1
             unused = np.ones_like(self._changed)
-            self._draw(poses, table, redraw.resting, self._resting, unused, resting=None)
+            over = None if redraw.clear else self._resting
+            self._draw(poses, table, redraw.resting, self._resting, unused, resting=over)
         begin = self._resting if redraw.from_resting else None
         self._draw(poses, table, redraw.casters, self.inverse_depth, self._changed, resting=begin)
 
@@ -135,7 +136,7 @@ class FrameLight:
             native_library().digest,
         )
         self._reflection_points = np.zeros(1, REFLECTION_POINT)
-        self._sky: tuple[tuple[SkyMap, SkyLook], NDArray[np.float16]] | None = None
+        self._sky: tuple[tuple[SkyMap, float | None], NDArray[np.float16]] | None = None
         self._lamps = np.zeros(0, LAMP)
         self._warned_of: Sequence[Light] | None = None
         self._light = np.zeros(1, LIGHT)
@@ -210,10 +211,10 @@ class FrameLight:
             light["main_towards"][0] = -np.asarray(main.direction)
         light["outside_id"], light["outside_radiance"] = shown_outside(snapshot.contents)
         if environment.sky is not None:
-            wanted = environment.sky, sky_look(environment)
+            wanted = environment.sky, seen_exposure(environment)
             if self._sky is None or self._sky[0] != wanted:
                 self._sky = wanted, _sky_texels(*wanted)
-            _set_sky(light, self._sky[1])
+            _set_sky(light, self._sky[1], environment.outside_factor)
         return light
 
     def _set_shadows(self, light: NDArray[np.void], shadow: ShadowMap, static: ShadowMap) -> None:
@@ -269,8 +270,8 @@ class FrameLight:
         light["shadow_at"] = address(unshadowed)
         lamp, sky = lamp_rows(()), contents.environment.sky
         if alone is None and sky is not None:
-            texels = _sky_texels(sky, AS_IT_IS)
-            _set_sky(light, texels)
+            texels = _sky_texels(sky, None)
+            _set_sky(light, texels, 1.0)
         if alone is None:
             composited = composite_lightmap(contents.baked.of_still, (), contents.environment)
         else:
@@ -312,15 +313,16 @@ def _set_baked(light: NDArray[np.void], composited: CompositedLight, light_map: 
     light["edge_blocks_at"] = address(None if edges is None else edges.blocks)
 
 
-def _set_sky(light: NDArray[np.void], texels: NDArray[np.float16]) -> None:
+def _set_sky(light: NDArray[np.void], texels: NDArray[np.float16], factor: float) -> None:
+    light["sky_factor"] = factor
     light["sky_map_at"] = address(texels)
     light["sky_height"], light["sky_width"] = len(texels), texels.shape[1] - 1
 
 
 @lru_cache(maxsize=2)
-def _sky_texels(sky: SkyMap, look: SkyLook) -> NDArray[np.float16]:
+def _sky_texels(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
     """Return (H, W + 1, 4) of `seen_sky`: the first column is repeated behind the last."""
-    seen = seen_sky(sky, look)
+    seen = seen_sky(sky, exposure)
     height, width, _ = seen.shape
     texels = np.zeros((height, width + 1, 4), np.float16)
     texels[:, :width, :3] = seen

@@ -25,7 +25,7 @@ from sailenv_ros.render.scene.flat_mirrors import Window
 from sailenv_ros.render.scene.opening_window import OpeningWindows
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import Share
-from sailenv_ros.render.scene.seen_sky import seen_sky, sky_look
+from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
@@ -96,7 +96,7 @@ class NativeRenderer(DrawingRenderer):
         self._table.show(contents)
         environment = contents.environment
         if environment.sky is not None:
-            seen_sky(environment.sky, sky_look(environment))
+            seen_sky(environment.sky, seen_exposure(environment))
 
     def _at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
         return self._table.at_baked_pose(snapshot)

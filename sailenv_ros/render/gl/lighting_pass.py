@@ -23,7 +23,7 @@ from sailenv_ros.render.gl.shadow_pass import ShadowPass
 from sailenv_ros.render.scene.lamps import MAX_LIGHTS, strongest_lamps
 from sailenv_ros.render.scene.outside_light import NOTHING_OUTSIDE
 from sailenv_ros.render.scene.reflection_points import MOST
-from sailenv_ros.render.scene.seen_sky import AS_IT_IS, SkyLook, seen_sky, sky_look
+from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.render.scene.shadow_plan import SIZE_PX
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.lights import Environment, Light, SkyMap, lamp_rows
@@ -91,7 +91,7 @@ class LightingPass:
         self._context = context
         self._programs = programs
         self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
-        self._sky_shown: tuple[SkyMap, SkyLook] | None = None
+        self._sky_shown: tuple[SkyMap, float | None] | None = None
         self._sky_texture: moderngl.Texture | None = None
         self._warned_of: Sequence[Light] | None = None
         self._lamps = context.buffer(reserve=MAX_LIGHTS * LAMP.itemsize, dynamic=True)
@@ -107,8 +107,10 @@ class LightingPass:
         for program in (light, sky):
             set_camera(program, camera, environment)
         if environment.sky is not None:
-            look = sky_look(environment) if illumination.blended else AS_IT_IS
-            self._show_sky(environment.sky, look, sky)
+            exposure = seen_exposure(environment) if illumination.blended else None
+            self._show_sky(environment.sky, exposure, sky)
+            factor = environment.outside_factor if illumination.blended else 1.0
+            set_uniform(sky, "sky_factor", factor)
         self._set_lights(light, camera, illumination)
         _set_textures(light, targets, illumination)
         # The covering triangle lies at the far end: in front of it are surfaces, on it is sky.
@@ -151,19 +153,19 @@ class LightingPass:
             self._arrays[program] = self._context.vertex_array(program, [])
         return self._arrays[program]
 
-    def _show_sky(self, sky: SkyMap, look: SkyLook, program: moderngl.Program) -> None:
+    def _show_sky(self, sky: SkyMap, exposure: float | None, program: moderngl.Program) -> None:
         """Make a sky's picture readable; it is uploaded where it is another than before."""
-        if self._sky_texture is None or (sky, look) != self._sky_shown:
+        if self._sky_texture is None or (sky, exposure) != self._sky_shown:
             if self._sky_texture is not None:
                 self._sky_texture.release()
-            seen = seen_sky(sky, look)
+            seen = seen_sky(sky, exposure)
             height, width, _ = seen.shape
             self._sky_texture = self._context.texture(
                 (width, height), 3, seen.tobytes(), dtype="f2"
             )
             self._sky_texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
             self._sky_texture.repeat_y = False
-            self._sky_shown = sky, look
+            self._sky_shown = sky, exposure
         self._sky_texture.use(SKY_UNIT)
         set_uniform(program, "sky_map", SKY_UNIT)
 

@@ -63,7 +63,8 @@ class ShadowPass:
             self._context.copy_framebuffer(self._resting, self._framebuffer)
         if redraw.resting is not None:
             self._resting.use()
-            self._resting.clear(depth=1.0)
+            if redraw.clear:
+                self._resting.clear(depth=1.0)
             self._issue(draws, geometry, redraw.resting)
         if redraw.from_resting:
             self._context.copy_framebuffer(self._framebuffer, self._resting)

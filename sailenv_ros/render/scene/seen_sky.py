@@ -10,7 +10,6 @@ changed: light and reflections come from the sky as it is.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -21,7 +20,7 @@ from sailenv_ros.types.colour import LUMINANCE
 from sailenv_ros.types.digests import sky_digest
 from sailenv_ros.types.lights import Environment, SkyMap
 
-__all__ = ["AS_IT_IS", "FINER", "SkyLook", "seen_exposure", "seen_sky", "sky_look"]
+__all__ = ["FINER", "seen_exposure", "seen_sky"]
 
 FINER = 2
 """Pixels of what is seen for one of the file, along each side: windows magnify the sky, and
@@ -55,37 +54,13 @@ BRIGHTEST = 0.85
 """Exposed luminance that no pixel passes."""
 
 
-class SkyLook(NamedTuple):
-    """Look of a sky.
-
-    Attributes
-    ----------
-    exposure : float or None
-        Of the surroundings [stops]: it is blended for a picture of that exposure. None leaves
-        brightness as it is.
-    factor : float
-        Of its brightness.
-    """
-
-    exposure: float | None
-    factor: float
-
-
-AS_IT_IS = SkyLook(None, 1.0)
-"""The look of a sky that lights and is mirrored."""
-
-
-def sky_look(environment: Environment) -> SkyLook:
-    """Return how a sky is seen."""
-    return SkyLook(seen_exposure(environment), environment.outside_factor)
-
-
 def seen_exposure(environment: Environment) -> float | None:
     """Return for which exposure a sky is blended [stops]; None if it is shown as it is."""
     return environment.exposure if environment.sky_blend else None
 
 
-def seen_sky(sky: SkyMap, look: SkyLook = AS_IT_IS) -> NDArray[np.float16]:
+@lru_cache(maxsize=2)
+def seen_sky(sky: SkyMap, exposure: float | None = None) -> NDArray[np.float16]:
     """Return (`FINER` H, `FINER` 2 H, 3) float16: the radiance that is seen of a sky.
 
     A sky's file holds no sun (`assets.skies`): where it stood, luminance is capped, and what is
@@ -95,18 +70,10 @@ def seen_sky(sky: SkyMap, look: SkyLook = AS_IT_IS) -> NDArray[np.float16]:
     Parameters
     ----------
     sky : SkyMap
-    look : SkyLook
+    exposure : float or None
+        Of the surroundings [stops]: it is blended for a picture of that exposure. None leaves
+        brightness as it is: so it lights and is mirrored.
     """
-    if look.factor == 1.0:
-        return _seen(sky, look.exposure)
-    shown: NDArray[np.float16] = np.minimum(
-        _seen(sky, look.exposure) * np.float32(look.factor), np.float32(_MOST)
-    ).astype(np.float16)
-    return shown
-
-
-@lru_cache(maxsize=1)
-def _seen(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
     found: NDArray[np.float16] = cached_arrays(
         "sky",
         [sky_digest(sky), exposure, cv2.__version__],

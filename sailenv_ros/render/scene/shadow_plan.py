@@ -31,6 +31,13 @@ receive shadows and cast none: they would stretch the shadow map to their own si
 
 FARTHEST_M = 1e5
 
+BOUNDS_STEP_M = 0.125
+"""What the map encloses ends at multiples of this [m]: what moves in a room leaves the map, and so
+what was drawn into it at rest, as it is."""
+
+SETTLED_UPDATES = 10
+"""What stands where it is for so many updates is drawn into the second map, too."""
+
 SIZE_PX = 1024
 
 
@@ -66,7 +73,9 @@ class ShadowRedraw:
     keep : bool
         True if the map as it is becomes the second one first.
     resting : (N,) bool or None
-        What is to be drawn into the second map first, which is cleared; None if nothing is.
+        What is to be drawn into the second map first; None if nothing is.
+    clear : bool
+        True if the second map is cleared before that, False if it is drawn over what is there.
     from_resting : bool
         True if the map begins as a copy of the second one, False if it begins empty.
     casters : (N,) bool
@@ -77,6 +86,7 @@ class ShadowRedraw:
     casters: NDArray[np.bool_]
     keep: bool = False
     resting: NDArray[np.bool_] | None = None
+    clear: bool = True
     from_resting: bool = False
 
 
@@ -102,6 +112,7 @@ class ShadowPlan:
         self._shapes: Mapping[int, Deformation] = {}
         self._casting = self._framed = self._at_rest = np.zeros(0, bool)
         self._rest_poses = np.zeros((0, 4, 4))
+        self._stood = np.zeros(0, np.intp)
         self._rest_drawn = self._shows_rest = False
         self._frame: tuple[object, ...] = ()
         self.clip_from_light: NDArray[np.float64] = np.eye(4)
@@ -124,8 +135,7 @@ class ShadowPlan:
         casting : (N,) bool or None
             Which instances cast; None for all.
         framed : (N,) bool or None
-            Which instances the map encloses; None for all. Things that move are better left out:
-            a map that follows them changes its texels' places, and so every shadow's edge.
+            Which instances the map encloses; None for all.
         """
         self._follow(snapshot.contents)
         poses = _steady(snapshot)
@@ -151,7 +161,15 @@ class ShadowPlan:
             # Drawn apart only when it is needed a second time: what goes on moving never is.
             self._at_rest, self._rest_poses, self._rest_drawn = casting & ~moved, poses, False
             self._shows_rest = not (casting & moved).any()
+            self._stood = np.zeros(len(poses), np.intp)
             return ShadowRedraw(poses, casting)
+        self._stood = np.where(moved, 0, self._stood + 1)
+        settled = casting & ~self._at_rest & (self._stood >= SETTLED_UPDATES)
+        if self._rest_drawn and settled.any():
+            self._at_rest |= settled
+            self._rest_poses = np.where(settled[:, None, None], poses, self._rest_poses)
+            others = casting & ~self._at_rest
+            return ShadowRedraw(poses, others, resting=settled, clear=False, from_resting=True)
         keep = not self._rest_drawn and self._shows_rest
         resting = None if self._rest_drawn or keep else self._at_rest
         self._rest_drawn, self._shows_rest = True, False
@@ -198,6 +216,9 @@ class ShadowPlan:
             if len(self._at_rest) == len(gone):
                 self._at_rest = brought(self._at_rest)
                 self._rest_poses = placed(self._rest_poses)
+                stood = np.zeros(len(keys), np.intp)
+                stood[known] = self._stood[rows[known]]
+                self._stood = stood
         # The number of a model is unique only while it lives: the contents keep it.
         self._contents, self._keys = contents, keys
 
@@ -209,15 +230,16 @@ class ShadowPlan:
         framed: NDArray[np.bool_],
     ) -> None:
         """Enclose the framed instances, if that is not done yet."""
-        keys = tuple(key for key, is_framed in zip(self._keys, framed, strict=True) if is_framed)
-        frame = (light.direction, keys, poses[framed].tobytes())
+        light_from_world = _light_axes(light)
+        spheres = self._spheres.of(snapshot.contents, poses)
+        low, high = _caster_bounds(light_from_world, spheres, framed)
+        frame = light.direction, low.tobytes(), high.tobytes()
         if self._frame == frame:
             return
         self._frame = frame
         self._at_rest = np.zeros(0, bool)
-        self.clip_from_light, self.light_from_world, width_m = _frustum(
-            light, self._spheres.of(snapshot.contents, poses), framed
-        )
+        self.light_from_world = light_from_world
+        self.clip_from_light, width_m = _projection(low, high)
         self.texel_m = width_m / SIZE_PX
         # From clip space, -1 to 1, to texture space, 0 to 1.
         half = np.diag([0.5, 0.5, 0.5, 1.0])
@@ -249,20 +271,21 @@ def _sized(mask: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:
     return mask if len(mask) == count else np.zeros(count, bool)
 
 
-def _frustum(
-    light: Light,
-    spheres: tuple[NDArray[np.float64], NDArray[np.float64]],
-    framed: NDArray[np.bool_],
-) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """Fit an orthographic box along the light around those instances that can cast."""
+def _light_axes(light: Light) -> NDArray[np.float64]:
+    """Return (4, 4): the axes of a map, the third along the light."""
     forward = np.asarray(light.direction)
     helper = np.array([0.0, 0.0, 1.0]) if abs(forward[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
     right = np.cross(forward, helper)
     right /= np.linalg.norm(right)
-    up = np.cross(right, forward)
     light_from_world = np.eye(4)
-    light_from_world[:3, :3] = np.stack([right, up, forward])
-    low, high = _caster_bounds(light_from_world, spheres, framed)
+    light_from_world[:3, :3] = np.stack([right, np.cross(right, forward), forward])
+    return light_from_world
+
+
+def _projection(
+    low: NDArray[np.float64], high: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], float]:
+    """Return (4, 4), orthographic, of a box along the light, and its width [m]."""
     width = float(max(high[0] - low[0], high[1] - low[1], 0.5)) * 1.05
     centre = 0.5 * (low + high)
     near, far = float(low[2]) - 0.5, float(high[2]) + 0.5
@@ -272,7 +295,7 @@ def _frustum(
         -2.0 * centre[1] / width,
         -(far + near) / (far - near),
     ]
-    return clip, light_from_world, width
+    return clip, width
 
 
 class _Spheres:
@@ -307,6 +330,7 @@ def _caster_bounds(
     spheres: tuple[NDArray[np.float64], NDArray[np.float64]],
     framed: NDArray[np.bool_],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the lowest and highest corner, in the light's axes, of what is framed and can cast."""
     centres, radii = spheres
     # What has been flung out of the world must not take the map along.
     near = (np.abs(centres) <= FARTHEST_M).all(axis=1)
@@ -317,4 +341,6 @@ def _caster_bounds(
     low, high = (seen - around).min(axis=0), (seen + around).max(axis=0)
     # What receives the shadow may lie behind the last caster.
     high[2] += 6.0
-    return low, high
+    return np.floor(low / BOUNDS_STEP_M) * BOUNDS_STEP_M, np.ceil(
+        high / BOUNDS_STEP_M
+    ) * BOUNDS_STEP_M

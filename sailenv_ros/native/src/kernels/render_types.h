@@ -113,7 +113,8 @@ struct Light {
     int32_t background_plain;  // 1: the background is a colour
     const uint16_t* sky_map;   // halves (height, width, 4), or null
     int32_t sky_width, sky_height;
-    float exposure;  // factor
+    float sky_factor;  // of the map's radiance
+    float exposure;    // factor
     int32_t lamp_count;
     const Lamp* lamps;
     int32_t baked;              // 1: what follows counts

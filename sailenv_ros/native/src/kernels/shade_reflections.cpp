@@ -56,7 +56,7 @@ Vec3x8 background(const Light& light, Vec3x8 d) {
     Vec3x8 seen;
     f8 unused;
     transpose4(texels, seen.x, seen.y, seen.z, unused);
-    return seen;
+    return seen * light.sky_factor;
 }
 
 void mirror_surroundings(const Shading& s, Chunk& c) {

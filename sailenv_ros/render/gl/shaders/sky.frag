@@ -6,11 +6,13 @@ layout(location = 0) out vec4 out_colour;  // see picture.glsl
 uniform vec4 background;  // colour; 1 if it is shown instead of the sky
 #ifdef SKY_MAP
 uniform sampler2D sky_map;  // equirectangular, row 0 is the zenith
+uniform float sky_factor;   // of its radiance
 
 vec3 mapped_sky(vec3 d) {
     const float PI = 3.14159265;
     // Of the finest level always: at the seam the derivatives of the angle mean nothing.
-    return textureLod(sky_map, vec2(0.5 - atan(d.y, d.x) / (2.0 * PI), acos(d.z) / PI), 0.0).rgb;
+    vec2 place = vec2(0.5 - atan(d.y, d.x) / (2.0 * PI), acos(d.z) / PI);
+    return sky_factor * textureLod(sky_map, place, 0.0).rgb;
 }
 #else
 #define mapped_sky sky
