@@ -49,7 +49,7 @@ WITHIN = 1_000
 APPEARS = "bathtub"
 
 SIGNALS = ("red", "green", "blue", "red / blue", "floor", APPEARS)
-"""Mean colours of a picture, the share of the floor, and whether the category that appears is seen."""
+"""Mean colours of a picture, and shares of its pixels that are of a category."""
 
 CLOCK, FRAMES = 32, 100_000
 DELTA = 0.002 / (FRAMES / CLOCK)
@@ -272,19 +272,18 @@ def _signals(course: dict[str, Any], seed: int, begin: int, end: int) -> dict[st
         path = Path(folder) / "course.yaml"
         path.write_text(yaml.safe_dump(course))
         with streams.open(path, seed=seed, views=("rgb", "category")) as stream:
-            told = [(frame["rgb"].mean(axis=(0, 1)), _shown(frame)) for frame in stream[begin:end]]
+            told = [(frame["rgb"].mean(axis=(0, 1)), _shares(frame)) for frame in stream[begin:end]]
     red, green, blue = np.array([colours for colours, _ in told]).T / 255.0
-    values = red, green, blue, red / blue / 4.0, *np.array([shown for _, shown in told]).T
+    values = red, green, blue, red / blue / 4.0, *np.array([shares for _, shares in told]).T
     return dict(zip(SIGNALS, values, strict=True))
 
 
-def _shown(frame: streams.StreamFrame) -> tuple[float, float]:
-    """Return the share of pixels that are floor, and 1 if the category that appears is seen."""
+def _shares(frame: streams.StreamFrame) -> list[float]:
+    """Return the shares of pixels that are floor, and of the category that appears."""
     info = frame.frame.info
     assert info is not None
-    floor, appears = (info.categories.named(name).id for name in ("floor", APPEARS))
-    category = frame["category"]
-    return float((category == floor).mean()), float((category == appears).any())
+    ids = [info.categories.named(name).id for name in ("floor", APPEARS)]
+    return [float((frame["category"] == one).mean()) for one in ids]
 
 
 def _changes(values: np.ndarray) -> list[int]:
