@@ -337,7 +337,7 @@ def walks_in(world: World, seed: int, count: int) -> Any:
             if walker.activity == "standing":
                 break
         away = np.hypot(*(np.subtract(person.pose().position_m[:2], goal)))
-        results.append((bool(away < 0.1), walker.problem, depth, low, slide))
+        results.append((bool(away < 0.12), walker.problem, depth, low, slide))
     return results
 
 

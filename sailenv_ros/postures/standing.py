@@ -25,14 +25,21 @@ _MOST_LOOK_DEG = (62.0, 32.0)
 
 
 def hanging_arms(
-    rig: Rig, chest: Doubles, swing_deg: tuple[float, float], ease_deg: float = 10.0
+    rig: Rig,
+    chest: Doubles,
+    swing_deg: tuple[float, float],
+    ease_deg: float = 10.0,
+    spread: float = 0.16,
 ) -> dict[str, Doubles]:
-    """Return the turns of arms that hang, swung forward by angles, left and right [deg]."""
+    """Return the turns of arms that hang, swung forward by angles, left and right [deg].
+
+    `spread` is the tangent of the angle from which upper arms hang straight down.
+    """
     turns: dict[str, Doubles] = {}
     for (side, sign), swing in zip(SIDES, swing_deg, strict=True):
         angle = np.radians(swing)
         bend = angle + np.radians(ease_deg + 0.6 * max(swing, 0.0))
-        upper = np.array([np.sin(angle), 0.16 * sign, -np.cos(angle)])
+        upper = np.array([np.sin(angle), spread * sign, -np.cos(angle)])
         lower = np.array([np.sin(bend), 0.03 * sign, -np.cos(bend)])
         turns |= bend_arm(rig, side, chest, None, upper, lower)
         # Shoulders are raised at rest, where arms are spread.

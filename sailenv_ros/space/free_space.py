@@ -125,6 +125,20 @@ class FreeSpace:
         return cell is not None and bool(self.cells[cell] == FREE)
 
     @cached_property
+    def clearance_m(self) -> NDArray[np.float32]:
+        """(H, W) float32 read-only: how far the body is at least from what it would touch [m].
+
+        To the middle of the nearest cell that is not free, less one cell; 0 where it is not free.
+        """
+        from scipy import ndimage
+
+        far = ndimage.distance_transform_edt(np.pad(self.free, 1))[1:-1, 1:-1]
+        result: NDArray[np.float32] = np.maximum(far - 1.0, 0.0).astype(np.float32)
+        result *= np.float32(self.resolution_m)
+        result.flags.writeable = False
+        return result
+
+    @cached_property
     def regions(self) -> NDArray[np.int32]:
         """(H, W) int32 read-only: number of the region that each free cell belongs to, else 0.
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S
+from sailenv_ros.postures.easing import smooth_step
 from sailenv_ros.postures.footsteps import (
     FootPrint,
     Moment,
@@ -35,6 +36,10 @@ Place = tuple[float, float]
 
 _BLOCKED_S = 1.2
 """Time for which one waits for another who is in the way [s]."""
+
+_LEAST_SWING, _WIDE = 0.15, 0.18
+"""Share of their swing that arms have beside furniture, and the room for all of it, as a share of
+the height: hands come before the cylinder that ways are found for."""
 
 
 class Stepper:
@@ -88,6 +93,7 @@ class Stepper:
         self._way = None
         self._way_s = 0.0
         self._waited_s = 0.0
+        self._swings = 1.0, 1.0
         self._goal: tuple[Place, float | None] | None = None
         self._looks_at = ""
         self.matrix = self._matrix_of_moment()
@@ -153,11 +159,25 @@ class Stepper:
                 self._wait(way, later)
                 return
             self._waited_s = 0.0
+            self._swings = self._swings[1], self._swing_at(way.at((later + 0.5) * way.step_s))
         self._way_s += STEP_S
         if self._way_s >= way.duration_s:
             self._feet = way.feet_after(len(way.prints))
             self._way = None
         self.matrix = self._matrix_of_moment()
+
+    def _swing_at(self, moment: Moment) -> float:
+        """Return the share of their swing that arms have room for."""
+        if self.crowd is None:
+            return 1.0
+        room_m = self.crowd.clearance_m(self._size, (moment.x, moment.y))
+        share = _LEAST_SWING + (1.0 - _LEAST_SWING) * room_m / (_WIDE * self._size.height_m)
+        return min(share, 1.0)
+
+    def _swing_now(self) -> float:
+        """Return that of arms now: from step to step it changes smoothly."""
+        before, after = self._swings
+        return before + (after - before) * smooth_step(self._moment().share)
 
     def _wait(self, way: Way, number: int) -> None:
         """Stand where a step has ended; go round who stands in the way, or give up."""

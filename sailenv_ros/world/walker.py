@@ -103,8 +103,9 @@ class Walker(Stepper):
         if self._does is not None and self._way is None:
             return self._does.posture(now)
         posture = walking_posture(
-            self._actor.rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg
-        )
+            self._actor.rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg,
+            swing=self._swing_now(),
+        )  # fmt: skip
         return posture if self.held is None else with_carrying_arm(self._actor.rig, posture)
 
     # -- what behaviours tell it (see behaviours.person.Person) --------------------------------

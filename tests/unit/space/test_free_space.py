@@ -47,6 +47,23 @@ def test_a_box_keeps_the_radius_free_around_it() -> None:
     assert np.array_equal(space.cells == FREE, beside >= 0.2)
 
 
+def test_clearance_is_never_more_than_there_is() -> None:
+    """And at most two diagonals of a cell less."""
+    box = BoxShape(half_extents_m=(0.33, 0.21, 0.4), centre_m=(0.21, -0.13, 0.4))
+    space = map_free_space(solids(FLOOR, box), BODY)
+    x, y = middles(space)
+    beside = np.hypot(
+        np.maximum(np.abs(x - 0.21) - 0.33, 0.0), np.maximum(np.abs(y + 0.13) - 0.21, 0.0)
+    )
+    low, high = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
+    edge = np.minimum.reduce([x - low[0], high[0] - x, y - low[1], high[1] - y])
+    room = np.minimum(beside - BODY.radius_m, edge)
+    found = space.clearance_m[space.free]
+    assert (found <= room[space.free] + 1e-6).all()
+    assert (found >= room[space.free] - 2.0 * np.sqrt(2.0) * BODY.resolution_m).all()
+    assert (space.clearance_m[~space.free] == 0.0).all()
+
+
 def test_a_turned_box_is_turned_in_the_map() -> None:
     """In its own axes the distances are those of the box that is not turned."""
     box = BoxShape(half_extents_m=(0.5, 0.1, 0.4))

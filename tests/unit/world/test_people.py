@@ -67,6 +67,34 @@ def test_ways_lead_round_furniture() -> None:
     world.close()
 
 
+def test_hands_stay_out_of_what_one_passes() -> None:
+    """Where there is room they swing farther than the cylinder that ways are found for."""
+    gap_m = 0.36  # from the middle of the way to the walls at its sides
+    walls = [
+        placed(f"wall_{y}", box(f"w{y}", (4.0, 0.2, 1.8)), 0.0, y, static=True)
+        for y in (gap_m + 0.1, -gap_m - 0.1)
+    ]
+    ends = placed("end", box("e", (0.2, 1.0, 1.8)), 1.6, 0.0, static=True)
+    beside, ahead = [], []
+    for around in ([*walls, ends], []):
+        world = world_of(person("anna", -1.2, 0.0), *around)
+        anna = one(world, "anna")
+        world.step(1)
+        assert anna.walker.walk_to((1.1, 0.0))
+        places = []
+        while anna.walker.activity == "walking":
+            rig, joints = STICK.rig, anna.skeleton().joints
+            assert rig is not None
+            hands = joints[[rig.joint_of[f"wrist.{side}"] for side in "LR"]]
+            places.append(hands - [anna.pose().position_m[0], 0.0, 0.0])
+            world.step(6)
+        beside.append(np.abs(np.array(places)[..., 1]).max())
+        ahead.append(np.array(places)[..., 0].max())
+        world.close()
+    assert beside[0] < gap_m - 0.03
+    assert ahead[0] < 0.6 * ahead[1]
+
+
 def test_people_do_not_walk_through_each_other() -> None:
     world = world_of(
         person("anna", -2.0, 0.0),
