@@ -133,6 +133,40 @@ def test_shadows_follow_what_creeps(
     assert (np.abs(first - last).max(axis=-1) > 20).mean() > 0.02
 
 
+def test_shadows_of_what_comes_to_rest_stay(
+    make_renderer: Callable[[], RenderBackend], renderer: RenderBackend
+) -> None:
+    """One thing after the other stops, one goes on: pictures are those of new renderers."""
+    floor = Thing(model_of(wall_mesh(8, 8)), Pose.from_rpy_deg((4.0, 0, -1.0), (0, 90, 0)))
+    boxes = [Thing(model_of(box_mesh(0.5)), Pose((4.0, y, 0.4))) for y in (-1.2, 0.0, 1.2)]
+    sun = Light(name="sun", type="directional", direction=(0.3, 0.5, -1.0), intensity=1.5)
+    contents = contents_of([floor, *boxes], lights=(sun,))
+    camera = camera_at(look_at((0.5, 0, 2.5), (4.0, 0, -1.0)), width=120, height=90)
+
+    def picture(by: RenderBackend, step: int) -> NDArray[np.uint8]:
+        ends = 5, 12, 99
+        poses = [
+            Pose((4.0 + 0.02 * min(step, end), box.pose.position_m[1], 0.4))
+            for box, end in zip(boxes, ends, strict=True)
+        ]
+        there = moved([floor, *boxes], floor.pose, *poses)
+        velocities = np.zeros((4, 2, 3))
+        for row, end in enumerate(ends, start=1):
+            velocities[row, 0, 0] = 0.5 if step < end else 0.0
+        snapshot = replace(snapshot_of(there, contents=contents), velocities=velocities)
+        return by.render(snapshot, None, camera, ["rgb"]).views["rgb"]
+
+    for step in range(45):
+        last = picture(renderer, step)
+        if step % 11 == 10:
+            fresh = make_renderer()
+            try:
+                wanted = picture(fresh, step)
+            finally:
+                fresh.close()
+            assert np.array_equal(last, wanted)
+
+
 def test_a_texture_is_neither_mirrored_nor_upside_down(render: Render) -> None:
     """Each quarter of a picture appears in its own corner of the wall that shows it."""
     texture = np.zeros((64, 64, 4), np.uint8)
