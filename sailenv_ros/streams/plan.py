@@ -67,6 +67,7 @@ class StreamPlan:
         ]
         self._rooms = (*spec.scenes, *generated)
         self._order = lru_cache(maxsize=8)(self._mixed)
+        self._habit = lru_cache(maxsize=8)(self._drawn_habit)
 
     @property
     def rooms(self) -> tuple[str, ...]:
@@ -77,19 +78,22 @@ class StreamPlan:
         """Return where a frame is."""
         episode, offset = divmod(frame, self._course.episode)
         tour, number = divmod(episode // self._course.visit, len(self._rooms))
-        eye = self._course.eye
-        weights = [getattr(eye, habit) for habit in HABITS]
         return Place(
             frame=frame,
             episode=episode,
             offset=offset,
             room=self._order(tour)[number],
-            habit=self.dice(episode, "habit").weighted(HABITS, weights),
+            habit=self._habit(episode),
         )
 
     def dice(self, episode: int, purpose: str) -> RandomStream:
         """Return random numbers of an episode, for one purpose."""
         return RandomStream("episode", self._seed, self._variant, episode, purpose)
+
+    def _drawn_habit(self, episode: int) -> str:
+        """Return the camera's habit in an episode."""
+        weights = [getattr(self._course.eye, habit) for habit in HABITS]
+        return self.dice(episode, "habit").weighted(HABITS, weights)
 
     def _mixed(self, tour: int) -> tuple[str, ...]:
         """Return the order in which all rooms are visited on a tour."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Annotated
 
 from pydantic import Field
@@ -33,14 +34,20 @@ class Mount(SceneModel):
         if frame < self.onset:
             return DriftRecord(values={"times": 0.0}, since=self.onset, active=False)
         times = (frame - self.onset) // self.every
-        dice = RandomStream("mount", seed, times)
-        roll, pitch, yaw = (dice.between((-self.turn, self.turn)) for _ in range(3))
-        ahead, left, up = (dice.between((-self.shift, self.shift)) for _ in range(3))
+        most = (self.turn,) * 3 + (self.shift,) * 3 + (self.zoom,)
+        roll, pitch, yaw, ahead, left, up, zoom = _drawn(most, seed, times)
         state.mount_rpy_deg, state.mount_m = (roll, pitch, yaw), (ahead, left, up)
-        state.zoom = 1.0 + dice.between((-self.zoom, self.zoom))
+        state.zoom = 1.0 + zoom
         return DriftRecord(
             values={"times": float(times + 1), "roll": roll, "pitch": pitch, "yaw": yaw,
                     "zoom": state.zoom},
             since=self.onset + times * self.every,
             active=True,
         )  # fmt: skip
+
+
+@lru_cache(maxsize=8)
+def _drawn(most: tuple[float, ...], seed: int, times: int) -> tuple[float, ...]:
+    """Return numbers between these and their negatives; asked for in each frame."""
+    dice = RandomStream("mount", seed, times)
+    return tuple(dice.between((-one, one)) for one in most)

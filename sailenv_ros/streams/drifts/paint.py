@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from pydantic import Field
 
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
@@ -35,8 +37,14 @@ class Paint(SceneModel):
         if frame < self.onset:
             return DriftRecord(values={"colour": ()}, since=self.onset, active=False)
         time = (frame - self.onset) // self.every
-        order = RandomStream("paint", seed).mixed(self.colours)
+        order = _order(self.colours, seed)
         state.paint = order[time % len(order)]
         return DriftRecord(
             values={"colour": state.paint}, since=self.onset + time * self.every, active=True
         )
+
+
+@lru_cache(maxsize=8)
+def _order(colours: tuple[LinearColour, ...], seed: int) -> tuple[LinearColour, ...]:
+    """Return the order in which they come; asked for in each frame."""
+    return tuple(RandomStream("paint", seed).mixed(colours))
