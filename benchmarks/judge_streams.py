@@ -48,16 +48,8 @@ WITHIN = 1_000
 
 APPEARS = "bathtub"
 
-GROUPS = ("floor", "wall", "other")
-"""What is looked at apart: a walking camera sees now more of this, now more of that."""
-
-SIGNALS = (
-    *(f"{colour} of {group}" for group in GROUPS for colour in ("red", "green", "blue")),
-    "share of floor",
-    "new category",
-)
-"""Mean colours of the pixels of a group, the last ones where there is none; the share of the floor;
-1 where a category is seen that the first `BEFORE` frames do not show, else 0."""
+SIGNALS = ("red", "green", "blue", "red / blue", "floor", APPEARS)
+"""Mean colours of a picture, and shares of its pixels that are of a category."""
 
 CLOCK, FRAMES = 32, 100_000
 DELTA = 0.002 / (FRAMES / CLOCK)
@@ -229,7 +221,7 @@ def judge_avalanche(count: int) -> None:
 def judge_drift(seed: int) -> None:
     """Tell what river's ADWIN finds of each drift."""
     for name, drift in DRIFTS.items():
-        signals = _signals({**PLAIN, "drift": drift}, seed, ONSET - BEFORE, ONSET + AFTER, set())
+        signals = _signals({**PLAIN, "drift": drift}, seed, ONSET - BEFORE, ONSET + AFTER)
         found = {
             signal: [place - BEFORE for place in _changes(values)]
             for signal, values in signals.items()
@@ -244,11 +236,11 @@ def judge_drift(seed: int) -> None:
 
 def judge_stillness(count: int, seed: int) -> None:
     """Tell what river's ADWIN finds where nothing drifts, after every 10,000 frames."""
-    detectors, known = {signal: _detector() for signal in SIGNALS}, set[int]()
+    detectors = {signal: _detector() for signal in SIGNALS}
     found: dict[str, list[int]] = {signal: [] for signal in detectors}
     for begin in range(0, count, 10_000):
         end = min(count, begin + 10_000)
-        signals = _signals(PLAIN, seed, begin, end, known)
+        signals = _signals(PLAIN, seed, begin, end)
         for signal, detector in detectors.items():
             for place, value in enumerate(signals[signal].tolist(), start=begin):
                 detector.update(value)
@@ -274,33 +266,24 @@ def resident_mib() -> float:
     return pages * resource.getpagesize() / 2**20
 
 
-def _signals(
-    course: dict[str, Any], seed: int, begin: int, end: int, known: set[int]
-) -> dict[str, np.ndarray]:
-    """Return simple statistics of frames, from 0 to 1 each: see `SIGNALS`.
-
-    The categories of the first `BEFORE` frames go into `known`, while it is empty.
-    """
-    rows, seen = [], []
-    colours = np.full((len(GROUPS), 3), 0.5)
+def _signals(course: dict[str, Any], seed: int, begin: int, end: int) -> dict[str, np.ndarray]:
+    """Return simple statistics of frames, from 0 to 1 each: see `SIGNALS`."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "course.yaml"
         path.write_text(yaml.safe_dump(course))
         with streams.open(path, seed=seed, views=("rgb", "category")) as stream:
-            for frame in stream[begin:end]:
-                info = frame.frame.info
-                assert info is not None
-                category, picture = frame["category"], frame["rgb"] / 255.0
-                floor, wall = (category == info.categories.named(name).id for name in GROUPS[:2])
-                for row, pixels in enumerate((floor, wall, ~floor & ~wall)):
-                    if pixels.any():
-                        colours[row] = picture[pixels].mean(axis=0)
-                rows.append([*colours.reshape(-1), floor.mean()])
-                seen.append(set(np.unique(category).tolist()))
-    if not known:
-        known |= set().union(*seen[:BEFORE])
-    new = np.array([bool(ids - known) for ids in seen], np.float64)
-    return dict(zip(SIGNALS, [*np.array(rows).T, new], strict=True))
+            told = [(frame["rgb"].mean(axis=(0, 1)), _shares(frame)) for frame in stream[begin:end]]
+    red, green, blue = np.array([colours for colours, _ in told]).T / 255.0
+    values = red, green, blue, red / blue / 4.0, *np.array([shares for _, shares in told]).T
+    return dict(zip(SIGNALS, values, strict=True))
+
+
+def _shares(frame: streams.StreamFrame) -> list[float]:
+    """Return the shares of pixels that are floor, and of the category that appears."""
+    info = frame.frame.info
+    assert info is not None
+    ids = [info.categories.named(name).id for name in ("floor", APPEARS)]
+    return [float((frame["category"] == one).mean()) for one in ids]
 
 
 def _changes(values: np.ndarray) -> list[int]:
