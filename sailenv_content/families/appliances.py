@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.fronts import FrontKind, flap
+from sailenv_content.families.hardware import KNOB_CLICKS, SEAL
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import PieceMaterial, glass, metal, paint
 from sailenv_content.families.shaping import turned
@@ -82,7 +83,7 @@ def knob_row(
     *,
     radius: float = 0.02,
 ) -> None:
-    """Add knobs that turn, on a face at x, at places along y."""
+    """Add knobs that turn and click, on a face at x, at places along y."""
     profile = [(0, 0), (radius, 0), (radius * 0.95, 0.016), (radius * 0.82, 0.02), (0, 0.02)]
     for number, y in enumerate(places):
         name, at = f"knob {number + 1}", (x + 0.0025, y, z)
@@ -94,6 +95,7 @@ def knob_row(
             opens_deg=270.0,
             friction=0.05,
             damping=0.02,
+            detents=KNOB_CLICKS,
         ):
             b.form(material, turned(profile, segments=20), at, turn=(0.0, 90.0, 0.0))
             mark = (x + 0.023, y, z + 0.55 * radius)
@@ -166,6 +168,7 @@ def oven(
         opens_deg=90.0,
         length=0.72 * width,
         pane=glass("#101214", 0.7),
+        shut=SEAL,
     )
 
 
@@ -246,6 +249,7 @@ def dishwasher(
         opens_deg=90.0,
         length=0.7 * float(door.size[1]),
         extra=extra,
+        shut=SEAL,
     )
 
 

@@ -16,13 +16,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from sailenv_content.families.hardware import Joint
 from sailenv_content.families.materials import PieceMaterial
 from sailenv_content.families.shaping import Floats, board, placed
 from sailenv_ros.assets.hulls import convex_hull
+from sailenv_ros.types.joints import Detents, SoftClose
 from sailenv_ros.types.labels import PART_MARK
 from sailenv_ros.types.model import BoxShape, CollisionShape, ConvexShape, Mesh
 
-__all__ = ["Joint", "Unfit", "Component", "PieceBuilder"]
+__all__ = ["Unfit", "Component", "PieceBuilder"]
 
 Vector3 = tuple[float, float, float]
 LEAST_SHIFT_M = 1e-5
@@ -32,19 +34,6 @@ Collides = Literal["hull", "box", "none"]
 
 class Unfit(Exception):
     """A draw that makes no sound piece: another is made."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Joint:
-    """On what a part moves; see `MovingPart`."""
-
-    type: Literal["hinge", "slide"]
-    axis: Vector3
-    origin_m: Vector3
-    limits: tuple[float, float]
-    friction: float
-    effort: float
-    damping: float
 
 
 @dataclass(slots=True, kw_only=True)
@@ -203,6 +192,8 @@ class PieceBuilder:
         opens_deg: float,
         friction: float = 0.3,
         damping: float = 0.3,
+        soft_close: SoftClose | None = None,
+        detents: Detents | None = None,
     ) -> Iterator[None]:
         """Add a part that turns by up to an angle about an axis through a point."""
         x, y, z = self._frame.point(at).tolist()
@@ -214,6 +205,8 @@ class PieceBuilder:
             friction=friction,
             effort=40.0,
             damping=damping,
+            soft_close=soft_close,
+            detents=detents,
         )
         with self._adding_to(Component(name=self._named(name), category=category, joint=joint)):
             yield
@@ -229,6 +222,8 @@ class PieceBuilder:
         back: float = 0.0,
         friction: float = 2.0,
         damping: float = 4.0,
+        soft_close: SoftClose | None = None,
+        detents: Detents | None = None,
     ) -> Iterator[None]:
         """Add a part that slides by up to a length, and back by another [m]."""
         joint = Joint(
@@ -239,6 +234,8 @@ class PieceBuilder:
             friction=friction,
             effort=80.0,
             damping=damping,
+            soft_close=soft_close,
+            detents=detents,
         )
         with self._adding_to(Component(name=self._named(name), category=category, joint=joint)):
             yield

@@ -15,6 +15,7 @@ from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import carcass, four_legs
 from sailenv_content.families.materials import WOODS, PieceMaterial, metal, paint, wood
 from sailenv_content.families.parameters import Choice, Values
+from sailenv_ros.types.joints import SoftClose
 
 __all__ = [
     "BOARD_M",
@@ -101,6 +102,7 @@ def cabinet_drawer(
     *,
     front: FrontKind | None = None,
     fill: bool = True,
+    soft_close: SoftClose | None = None,
 ) -> None:
     """Add a drawer of the cabinet's materials; its front is the cabinet's unless told otherwise."""
     drawer(
@@ -115,6 +117,7 @@ def cabinet_drawer(
         metal_=v.metal,
         side_gap=0.03,
         fill=fill,
+        soft_close=soft_close,
     )
 
 

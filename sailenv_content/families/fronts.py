@@ -12,9 +12,11 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.contents import folded
+from sailenv_content.families.hardware import MAGNET
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import PieceMaterial, glass, metal
 from sailenv_content.families.shaping import swept, turned
+from sailenv_ros.types.joints import Detents, SoftClose
 
 __all__ = [
     "CLEARANCE_M",
@@ -144,13 +146,23 @@ def door(
     opens_deg: float = 110.0,
     handle_z: float | None = None,
     pane: PieceMaterial | None = None,
+    soft_close: SoftClose | None = None,
 ) -> None:
-    """Add a hinged door: a front panel, its hinge at its left or right (as it looks), a handle."""
+    """Add a hinged door: a front panel, its hinge at its left or right (as it looks), a handle.
+
+    A magnet keeps it shut, unless it has a soft close.
+    """
     left = hinge == "left"
     y = panel.high[1] if left else panel.low[1]
     at = (panel.high[0], y, panel.middle[2])
     with b.hinge(
-        name, "door", at=at, axis=(0.0, 0.0, -1.0 if not left else 1.0), opens_deg=opens_deg
+        name,
+        "door",
+        at=at,
+        axis=(0.0, 0.0, -1.0 if not left else 1.0),
+        opens_deg=opens_deg,
+        soft_close=soft_close,
+        detents=MAGNET if soft_close is None else None,
     ):
         front_panel(b, material, kind, panel, pane=pane)
         inset = min(0.045, 0.2 * panel.size[1])
@@ -184,15 +196,16 @@ def flap(
     length: float = 0.0,
     pane: PieceMaterial | None = None,
     extra: tuple[PieceMaterial, Box] | None = None,
+    shut: Detents = MAGNET,
 ) -> None:
     """Add a front that folds down or up, with a handle near its free edge, `length` [m] long.
 
-    `extra` is a board that goes with it.
+    `extra` is a board that goes with it, `shut` what keeps it shut.
     """
     down = hinge == "bottom"
     at = (panel.high[0], panel.middle[1], panel.low[2] if down else panel.high[2])
     axis = (0.0, 1.0 if down else -1.0, 0.0)
-    with b.hinge(name, category, at=at, axis=axis, opens_deg=opens_deg):
+    with b.hinge(name, category, at=at, axis=axis, opens_deg=opens_deg, detents=shut):
         front_panel(b, material, kind, panel, pane=pane)
         if extra is not None:
             b.box(extra[0], extra[1].size, extra[1].middle)
@@ -247,6 +260,7 @@ def drawer(
     metal_: PieceMaterial | None = None,
     side_gap: float = 0.014,
     fill: bool = True,
+    soft_close: SoftClose | None = None,
 ) -> None:
     """Add a drawer: a front, a box behind it, a handle, and what lies in it.
 
@@ -258,7 +272,7 @@ def drawer(
         Of the box behind it [m].
     """
     size, middle = panel.size, panel.middle
-    with b.slide(name, "drawer", by=0.75 * depth):
+    with b.slide(name, "drawer", by=0.75 * depth, soft_close=soft_close):
         front_panel(b, material, kind, panel)
         width, height = size[1] - 2.0 * side_gap, max(0.03, size[2] - 0.045)
         low = panel.low[2] + 0.018

@@ -8,8 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from sailenv_content.families.builder import Component, Joint, PieceBuilder, Unfit
+from sailenv_content.families.builder import Component, PieceBuilder, Unfit
 from sailenv_content.families.family import Family
+from sailenv_content.families.hardware import Joint
 from sailenv_content.families.names import PieceName
 from sailenv_content.families.parameters import Values, drawn
 from sailenv_ros.assets.solids import joined
@@ -184,6 +185,8 @@ def _moving(
         friction=joint.friction,
         effort=joint.effort,
         damping=joint.damping,
+        soft_close=joint.soft_close,
+        detents=joint.detents,
     )
 
 

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
+from sailenv_content.families.hardware import clicks
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import PieceMaterial, paint
 from sailenv_content.families.shaping import swept, turned
@@ -64,14 +65,28 @@ def tap(
         for sign, name in ((1.0, "left knob"), (-1.0, "right knob")):
             at = (x, y + sign * 0.09, z)
             b.form(material, turned([(r * 0.9, 0.8 * h) for r, h in foot], segments=18), at)
-            with b.hinge(name, "handle", at=at, axis=(0.0, 0.0, 1.0), opens_deg=180.0):
+            with b.hinge(
+                name,
+                "handle",
+                at=at,
+                axis=(0.0, 0.0, 1.0),
+                opens_deg=180.0,
+                detents=clicks(0.4, 90.0),
+            ):
                 for turn in (0.0, 90.0):
                     bar = (0.06, 0.011, 0.011)
                     knob = (at[0], at[1], z + 0.052)
                     b.box(material, bar, knob, turn=(0, 0, turn), bevel=0.004, collides=False)
                 b.collide((0.05, 0.05, 0.012), (at[0], at[1], z + 0.053))
         return
-    with b.hinge("lever", "handle", at=(x, y, z + 0.035), axis=(0, -1.0, 0), opens_deg=35.0):
+    with b.hinge(
+        "lever",
+        "handle",
+        at=(x, y, z + 0.035),
+        axis=(0, -1.0, 0),
+        opens_deg=35.0,
+        detents=clicks(0.4, 17.5),  # shut, half for saving, and full
+    ):
         stub = [(x, y - 0.018, z + 0.035), (x, y - 0.045, z + 0.035)]
         b.form(material, swept(stub, 0.012, sides=12), collides="none")
         grip = [(x, y - 0.036, z + 0.035), (x + 0.085, y - 0.036, z + 0.045)]

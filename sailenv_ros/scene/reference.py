@@ -68,6 +68,8 @@ PAGES: Mapping[str, Mapping[str, str]] = {
         "ObjectSpec": "An object",
         "MaterialSpec": "A material",
         "JointSpec": "A joint",
+        "SoftCloseSpec": "A soft close",
+        "DetentsSpec": "Detents",
         "BehaviourSpec": "A behaviour",
         "CategorySpec": "A category",
         "LessonsSpec": "Lessons",

@@ -19,13 +19,17 @@ from sailenv_ros.scene.fields import (
     SceneModel,
 )
 from sailenv_ros.scene.messages import shown, suggestion
-from sailenv_ros.scene.rules import Faults
+from sailenv_ros.scene.rules import Entry, Faults, at_most_one
+from sailenv_ros.types.joints import JOINT_LIMITS, Detents, SoftClose
 from sailenv_ros.types.validation import is_finite_number, shown_number
 
-__all__ = ["JointSpec", "joints_hold", "on_a_joint"]
+__all__ = ["DetentsSpec", "JointSpec", "SoftCloseSpec", "joints_hold", "on_a_joint"]
 
 _JOINTS = ("hinge", "slide", "fixed", "free")
-_FOR_MOVING = ("axis", "limits", "position", "velocity", "damping", "friction", "effort")
+_FOR_MOVING = (
+    *("axis", "limits", "position", "velocity", "damping", "friction", "effort"),
+    *("soft_close", "detents"),
+)
 _PLACED_OTHERWISE = ("on", "wall", "velocity", "angular_velocity")
 
 
@@ -63,32 +67,115 @@ def _fixed_is_fixed(entry: Mapping[str, Any]) -> Faults:
                 yield (key,), "means something only for a hinge or a slide"
 
 
+_DEFAULTS = SoftClose(within=1.0, speed=1.0)
+
+
+def _shuts_at_a_limit(entry: Entry) -> Faults:
+    if entry.get("soft_close") is not None and entry.get("limits") is None:
+        yield ("soft_close",), "needs limits, at one of which the joint is shut"
+
+
+def _detents_within_limits(entry: Entry) -> Faults:
+    detents, limits = entry.get("detents"), entry.get("limits")
+    if not isinstance(detents, Mapping) or not isinstance(limits, Sequence) or len(limits) != 2:
+        return
+    if not all(map(is_finite_number, limits)):
+        return
+    (low, high), at = limits, detents.get("at")
+    accepted = f"must be within the limits, from {shown_number(low)} to {shown_number(high)}"
+    for index, place in enumerate(at if isinstance(at, Sequence) else ()):
+        if is_finite_number(place) and not low <= place <= high:
+            yield ("detents", "at", index), f"{accepted}, got {shown_number(place)}"
+    every = detents.get("every")
+    if is_finite_number(every) and every > 0.0 and math.ceil(low / every) * every > high:
+        yield ("detents", "every"), f"has no multiple {accepted.removeprefix('must be ')}"
+
+
+def _detents_are_somewhere(entry: Entry) -> Faults:
+    at = entry.get("at")
+    if entry.get("every") is None and at is None:
+        yield ("every",), "is needed, or at: where a joint has its detents"
+    if isinstance(at, Sequence) and len(set(map(repr, at))) < 2 and entry.get("within") is None:
+        yield ("within",), "is needed beside a single detent"
+
+
+def _within_limits(name: str) -> Number:
+    return Number.within(JOINT_LIMITS[name])
+
+
+class SoftCloseSpec(SceneModel):
+    """Damper and spring that shut a joint."""
+
+    within: Annotated[float, _within_limits("within")] = Field(
+        description="distance from the end at which it acts [rad] or [m]"
+    )
+    speed: Annotated[float, _within_limits("speed")] = Field(
+        description="at the end at most, and with which it shuts by itself [rad/s] or [m/s]"
+    )
+    strength: Annotated[float, _within_limits("strength")] = Field(
+        default=_DEFAULTS.strength,
+        description="of its spring, friction included [N m] or [N]",
+    )
+    end: Annotated[Literal["low", "high"], Choice(("low", "high"))] = Field(
+        default=_DEFAULTS.end, description="limit at which it is shut"
+    )
+
+    def to_soft_close(self) -> SoftClose:
+        """Return the data type that the simulation takes."""
+        return SoftClose(within=self.within, speed=self.speed, strength=self.strength, end=self.end)
+
+
+class DetentsSpec(SceneModel):
+    """Positions at which a joint clicks."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (at_most_one("every", "at"), _detents_are_somewhere)
+
+    strength: Annotated[float, _within_limits("strength")] = Field(
+        description="that takes it out of one, friction included; half pulls in [N m] or [N]"
+    )
+    every: Annotated[float, _within_limits("within")] | None = optional(
+        "distance between them, from 0 [rad] or [m]"
+    )
+    at: Annotated[tuple[JointCoordinate, ...], Field(min_length=1)] | None = optional(
+        "their places, instead of every [rad] or [m]"
+    )
+    within: Annotated[float, _within_limits("within")] | None = optional(
+        "distance at which they pull [rad] or [m]; default: half of that between two"
+    )
+
+    def to_detents(self) -> Detents:
+        """Return the data type that the simulation takes."""
+        return Detents(
+            strength=self.strength, every=self.every, at=self.at or (), within=self.within
+        )
+
+
 class JointSpec(SceneModel):
     """Joint of an object: its parent, its axis and its limits."""
 
-    rules: ClassVar[tuple[Rule, ...]] = (_axis_has_length, _limits_in_order, _fixed_is_fixed)
+    rules: ClassVar[tuple[Rule, ...]] = (
+        *(_axis_has_length, _limits_in_order, _fixed_is_fixed),
+        *(_shuts_at_a_limit, _detents_within_limits),
+    )
 
     type: Annotated[Literal["hinge", "slide", "fixed", "free"], Choice(_JOINTS)] = Field(
         description="hinge: turns about the axis (revolute); slide: moves along it (prismatic); "
-        "fixed: goes with its parent; free: moves freely, and may carry others on joints"
+        "fixed: goes with its parent; free: moves freely, may carry others"
     )
     parent: Name | None = optional(
-        "name of the object that carries it, static or on a joint; position and "
-        "rotation are relative to it. Default: the world"
+        "object that carries it, static or on a joint; position and rotation are relative "
+        "to it; default: the world"
     )
-    axis: Direction = Field(
-        default=(0.0, 0.0, 1.0), description="direction of the axis in the object's own frame"
-    )
+    axis: Direction = Field(default=(0.0, 0.0, 1.0), description="in the object's own frame")
     origin: Position = Field(
         default=(0.0, 0.0, 0.0),
         description="a point of a hinge's axis in the object's unscaled frame [m]",
     )
     limits: JointLimits | None = optional(
-        "least and greatest position: [rad] of a hinge, [m] of a slide; default: unlimited"
+        "least and greatest position [rad] or [m]; default: unlimited"
     )
     position: JointCoordinate | None = optional(
-        "at the start [rad] or [m]; default: 0 (the object's position and "
-        "rotation), or the nearest limit"
+        "at the start [rad] or [m]; default: 0, or the nearest limit"
     )
     velocity: JointCoordinate = Field(default=0.0, description="at the start [rad/s] or [m/s]")
     damping: Annotated[float, Number(least=0.0, most=1e6)] = Field(
@@ -100,9 +187,10 @@ class JointSpec(SceneModel):
     )
     effort: Annotated[float, Number(above=0.0, most=1e6)] = Field(
         default=100.0,
-        description="largest torque [N m] or force [N] with which set_joint_position and "
-        "behaviours move it",
+        description="largest torque [N m] or force [N] of set_joint_position and behaviours",
     )
+    soft_close: SoftCloseSpec | None = optional("shuts it slowly, by itself")
+    detents: DetentsSpec | None = optional("where it clicks")
 
     @property
     def moves(self) -> bool:

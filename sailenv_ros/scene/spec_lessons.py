@@ -27,10 +27,10 @@ class LessonSpec(SceneModel):
     objects: tuple[Name, ...] = Field(
         min_length=1,
         max_length=1000,
-        description="names of its objects, absent outside of their lessons",
+        description="its objects, absent outside of their lessons",
     )
     duration: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = optional(
-        "length [s]; default: until its objects have stopped moving"
+        "[s]; default: until its objects rest"
     )
     pause: _Pause | None = optional(
         "after it, without its objects [s]; that of the lessons if left out"
@@ -46,23 +46,23 @@ class LessonsSpec(SceneModel):
         min_length=1, max_length=1000, description="the lessons of a lap"
     )
     laps: Annotated[int, Number(least=1, most=1_000_000, whole=True)] | None = optional(
-        "number of laps; default: unlimited"
+        "default: unlimited"
     )
     after: Annotated[After, Choice(get_args(After))] = Field(
         default="end",
-        description="after the last lap. end: the objects stay away, and realtime is paused; "
-        "loop: the same laps begin again; go_on: the last lesson does not end",
+        description="after the last lap. end: the objects stay away, realtime is paused; "
+        "loop: the laps begin again; go_on: the last lesson does not end",
     )
     pause: _Pause = Field(default=0.0, description="after each lesson, without its objects [s]")
     shuffled: Annotated[bool, Switch()] = Field(
-        default=False, description="true: the order of the lessons is drawn for each lap"
+        default=False, description="true: their order is drawn for each lap"
     )
     varied: Annotated[bool, Switch()] = Field(
         default=False,
-        description="true: behaviours draw other random numbers in each lap; false: the same",
+        description="true: behaviours draw other random numbers in each lap",
     )
     seed: Annotated[int, Number(least=0, most=2**63 - 1, whole=True)] | None = optional(
-        "of the orders and of varied laps, instead of the simulation's"
+        "of orders and varied laps, instead of the simulation's"
     )
 
     @property

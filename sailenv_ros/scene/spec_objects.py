@@ -78,14 +78,14 @@ class ObjectSpec(Turned):
     )
     position: Position = Field(default=(0.0, 0.0, 0.0), description="of the asset's origin [m]")
     on: Name | None = optional(
-        "name of the object below: position and rotation are relative to it, z to its upper side"
+        "object below: position and rotation are relative to it, z to its upper side"
     )
     wall: Annotated[WallName, Choice(WALLS)] | None = optional(
         "wall at its back, instead of position: north (+y), east (+x), south (-y) or west (-x)"
     )
     at: Annotated[float, Number(least=-50.0, most=50.0, unit="m")] = Field(
         default=0.0,
-        description="its place along that wall, from the wall's middle, towards +x or +y [m]",
+        description="place along that wall, from its middle, towards +x or +y [m]",
     )
     height: Annotated[float, Number(least=0.0, most=100.0, unit="m")] = Field(
         default=0.0, description="of its origin above the floor, for hanging objects [m]"
@@ -97,7 +97,7 @@ class ObjectSpec(Turned):
         default=(1.0, 1.0, 1.0), description="one factor, or three along the asset's x, y, z"
     )
     static: Annotated[bool, Switch()] = Field(
-        default=False, description="true: never moves (floors, walls, heavy furniture)"
+        default=False, description="never moves: floors, walls, heavy furniture"
     )
     mass: (
         Annotated[
@@ -116,11 +116,9 @@ class ObjectSpec(Turned):
         optional("instead of the asset's category")
     )
     part_of: Name | None = optional(
-        "name of its parent object, for ground truth alone; nothing holds them together"
+        "its parent object, for ground truth alone; nothing holds them together"
     )
-    colour: LinearColour | None = optional(
-        "paints the whole object, instead of the asset's colours"
-    )
+    colour: LinearColour | None = optional("of the whole object, instead of the asset's")
     metallic: Fraction | None = optional("0: paint, plastic, wood; 1: bare metal")
     roughness: Fraction | None = optional("0: a mirror; 1: chalk")
     materials: tuple[MaterialSpec, ...] = Field(
@@ -139,10 +137,10 @@ class ObjectSpec(Turned):
     )
     appear: Annotated[float, Number(least=0.0, most=1e6, unit="s")] = Field(
         default=0.0,
-        description="time at which it appears, since the beginning of the scene or its lesson [s]",
+        description="when it appears, since the beginning of the scene or its lesson [s]",
     )
     leave: Annotated[float, Number(above=0.0, most=1e6, unit="s")] | None = optional(
-        "time at which it disappears; counted as appear [s]"
+        "when it disappears; counted as appear [s]"
     )
 
     @property

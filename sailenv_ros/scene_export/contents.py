@@ -77,6 +77,8 @@ class BodyJoint:
         Now [rad] or [m].
     friction, damping, effort : float
         [N m] or [N], [N m s/rad] or [N s/m], [N m] or [N].
+    acts : bool
+        True if it shuts or clicks by itself.
     """
 
     type: Literal["hinge", "slide", "fixed"]
@@ -89,6 +91,7 @@ class BodyJoint:
     friction: float
     damping: float
     effort: float
+    acts: bool = False
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

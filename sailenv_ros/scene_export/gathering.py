@@ -288,6 +288,7 @@ def _joint(body: Body) -> BodyJoint | None:
         friction=spec.friction,
         damping=spec.damping,
         effort=spec.effort,
+        acts=spec.soft_close is not None or spec.detents is not None,
     )
 
 

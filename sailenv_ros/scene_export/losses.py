@@ -6,7 +6,15 @@ from collections.abc import Iterator
 
 from sailenv_ros.scene_export.contents import ExportedScene
 
-__all__ = ["RICH", "camera_losses", "counted", "light_losses", "motion_losses", "physics_losses"]
+__all__ = [
+    "RICH",
+    "camera_losses",
+    "counted",
+    "joint_losses",
+    "light_losses",
+    "motion_losses",
+    "physics_losses",
+]
 
 RICH = (".glb", ".usda", ".usdz")
 """Formats that hold motion and baked light."""
@@ -22,6 +30,13 @@ def physics_losses(scene: ExportedScene, name: str, *, extras: bool) -> Iterator
     where = "; masses and joints stand in its extras" if extras else ""
     if any(body.shapes for body in scene.bodies):
         yield f"{name} has no collision shapes, masses and joints{where}"
+
+
+def joint_losses(scene: ExportedScene, name: str) -> Iterator[str]:
+    """Yield what a format with joints leaves out of them."""
+    acting = sum(body.joint is not None and body.joint.acts for body in scene.bodies)
+    if acting:
+        yield f"soft close and detents of {counted(acting, 'joint')} have no equal in {name}"
 
 
 def light_losses(scene: ExportedScene, name: str) -> Iterator[str]:

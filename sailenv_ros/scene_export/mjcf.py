@@ -15,7 +15,7 @@ import math
 from xml.etree.ElementTree import Element, SubElement
 
 from sailenv_ros.scene_export.contents import ExportedBody, ExportedPiece, ExportedScene, Written
-from sailenv_ros.scene_export.losses import camera_losses, light_losses
+from sailenv_ros.scene_export.losses import camera_losses, joint_losses, light_losses
 from sailenv_ros.scene_export.mjcf_assets import MjcfAssets
 from sailenv_ros.scene_export.mjcf_shapes import add_shape
 from sailenv_ros.scene_export.optics import light_pose, looking_back, point_intensity, view_angles
@@ -85,6 +85,7 @@ class _MjcfWriter:
     def losses(self) -> list[str]:
         """Return what was left out, in a sentence each."""
         found = [*light_losses(self._scene, "MJCF"), *camera_losses(self._scene, "MJCF")]
+        found += joint_losses(self._scene, "MJCF")
         if self._left_out:
             found.append("what lies outside the windows was left out")
         return [*found, *self.assets.losses()]

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from xml.etree.ElementTree import Element, SubElement
 
 from sailenv_ros.scene_export.contents import ExportedBody, ExportedCamera, ExportedScene, Written
-from sailenv_ros.scene_export.losses import camera_losses, light_losses
+from sailenv_ros.scene_export.losses import camera_losses, joint_losses, light_losses
 from sailenv_ros.scene_export.names import FreeNames
 from sailenv_ros.scene_export.optics import point_intensity, view_angles
 from sailenv_ros.scene_export.sdf_geometry import SdfGeometry, add_pose, add_text
@@ -69,6 +69,7 @@ class _SdfWriter:
         """Yield what SDFormat cannot hold."""
         yield from light_losses(self._scene, "SDFormat")
         yield from camera_losses(self._scene, "SDFormat")
+        yield from joint_losses(self._scene, "SDFormat")
         if any(body.is_outside for body in self._scene.bodies):
             yield "what lies outside the windows was left out"
         moved = sum(bool(b.joint and b.joint.position) for b in self._scene.bodies)

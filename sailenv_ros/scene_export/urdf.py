@@ -12,6 +12,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from sailenv_ros.scene_export.contents import ExportedBody, ExportedScene, Vector3, Written
+from sailenv_ros.scene_export.losses import joint_losses
 from sailenv_ros.scene_export.mesh_files import MeshFiles, hull_bytes
 from sailenv_ros.scene_export.names import FreeNames
 from sailenv_ros.scene_export.textures import Textures
@@ -76,6 +77,7 @@ class _UrdfWriter:
         if any(len(body.pieces) > 1 for body in self._scene.bodies):
             yield "labelled parts have no labels of their own in URDF"
         yield "materials are a colour and a picture in URDF"
+        yield from joint_losses(self._scene, "URDF")
 
     def _add_link(self, body: ExportedBody) -> None:
         link = SubElement(self._root, "link", name=self._names[body.name])

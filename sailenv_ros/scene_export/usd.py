@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 
 from sailenv_ros.scene_export.contents import ExportedBody, ExportedPiece, ExportedScene, Written
 from sailenv_ros.scene_export.lit_picture import lit_picture
-from sailenv_ros.scene_export.losses import camera_losses, counted
+from sailenv_ros.scene_export.losses import camera_losses, counted, joint_losses
 from sailenv_ros.scene_export.names import FreeNames, identifier
 from sailenv_ros.scene_export.optics import looking_back
 from sailenv_ros.scene_export.trees import together
@@ -63,6 +63,7 @@ def write_usdz(scene: ExportedScene, folder: str) -> Written:
 
 def _losses(scene: ExportedScene) -> Iterator[str]:
     yield from camera_losses(scene, "USD", shifts=True)
+    yield from joint_losses(scene, "USD")
     if scene.light_map is not None:
         yield "colours of what is in the light map are as fine as its picture in USD"
     environment = scene.environment

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.inertia import Inertia
+from sailenv_ros.types.joints import Detents, SoftClose
 from sailenv_ros.types.rig import Rig
 from sailenv_ros.types.shapes import (
     BoxShape,
@@ -333,6 +334,7 @@ class MovingPart:
         [N m] or [N].
     damping : float
         [N m s/rad] or [N s/m].
+    soft_close, detents : SoftClose or None, Detents or None
     """
 
     name: str
@@ -344,3 +346,5 @@ class MovingPart:
     friction: float = 1.0
     effort: float = 100.0
     damping: float = 1.0
+    soft_close: SoftClose | None = None
+    detents: Detents | None = None

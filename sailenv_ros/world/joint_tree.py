@@ -12,8 +12,9 @@ from collections.abc import Sequence
 
 from sailenv_ros.errors import PhysicsError
 from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose, invert
+from sailenv_ros.world import tree_motors
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
-from sailenv_ros.world.engine_settings import ROBOT_SUBSTEPS
+from sailenv_ros.world.joint_law import Motor, law_of
 from sailenv_ros.world.joint_links import STANDING, JointDrive, JointLink, at_origin
 from sailenv_ros.world.kinematics import composed
 from sailenv_ros.world.tree_building import build_tree, set_dynamics
@@ -29,11 +30,6 @@ engine's solver leaves such speeds where joints depend on one another."""
 
 SPARE = 0.99
 """Share of the friction's torque below which there is torque to spare."""
-
-GEAR_ERP = 0.5
-"""Share of the error between coupled joints that a step takes away."""
-
-GEAR_FORCE = 1e4
 
 
 class JointTree:
@@ -71,6 +67,9 @@ class JointTree:
         self._read: tuple[object, Pose] | None = None
         self._gears: list[int] = []
         self._motors: dict[int, JointDrive] = {}
+        laws = ((number, law_of(link.joint.spec)) for number, link in enumerate(self._links))
+        self._laws = {number: law for number, law in laws if law is not None}
+        self._lawful: dict[int, Motor] = {}
         self._rolled: dict[int, tuple[float, float]] = {}
         self._driven: set[int] = set()
         self._was_driven: set[int] = set()
@@ -146,22 +145,27 @@ class JointTree:
         self._client.resetJointState(self.bullet_id, self.link_of(number), position, velocity)
         self._last[number] = (position, velocity)
         self._version += 1
+        if number in self._lawful:
+            self._obey(number, position, velocity)
 
     def drive(self, number: int, velocity: float) -> None:
         """Move a joint with a velocity [rad/s] or [m/s] as long as its effort suffices."""
         self._driven.add(number)
         self.is_driven = True
+        self._lawful.pop(number, None)
         self._motor(number, velocity, self._links[number].joint.spec.effort)
         self.wake()
 
     def release(self, number: int) -> None:
-        """Leave a joint to its motor, if that follows a target, else to its friction."""
+        """Leave a joint to its motor, if that follows a target, else to its law or friction."""
         self._driven.discard(number)
         self._was_driven.discard(number)
         if number in self._motors:
             self.follow(number, self._motors[number])
-            return
-        self._motor(number, 0.0, self._links[number].joint.spec.friction)
+        elif number in self._laws:
+            self._obey(number, *self.state(number))
+        else:
+            self._motor(number, 0.0, self._links[number].joint.spec.friction)
 
     def roll(self, number: int, speed: float) -> None:
         """Let a wheel turn with a speed [rad/s] that nothing changes.
@@ -178,21 +182,12 @@ class JointTree:
     def follow(self, number: int, drive: JointDrive) -> None:
         """Let a joint's motor follow a target until something else is asked for."""
         self._motors[number] = drive
+        self._lawful.pop(number, None)
         self.is_driven = True
-        link, kinds = self.link_of(number), self._client.constants
         friction = self._links[number].joint.spec.friction
         if drive.mode == "position":
-            self._client.setJointMotorControl2(
-                self.bullet_id,
-                link,
-                kinds.POSITION_CONTROL,
-                targetPosition=drive.target,
-                targetVelocity=0.0,
-                positionGain=min(drive.gain / (STEPS_PER_SECOND * ROBOT_SUBSTEPS), 1.0),
-                velocityGain=1.0,
-                force=drive.effort,
-                maxVelocity=drive.speed,
-            )
+            link = self.link_of(number)
+            tree_motors.position_motor(self._client, self.bullet_id, link, drive)
         elif drive.mode == "velocity":
             self._motor(number, drive.target, drive.effort)
         else:
@@ -207,23 +202,8 @@ class JointTree:
 
     def couple(self, leader: int, follower: int, multiplier: float, offset: float) -> None:
         """Let a joint go with another: position = multiplier · the other's + offset."""
-        gear = self._client.createConstraint(
-            self.bullet_id,
-            self.link_of(leader),
-            self.bullet_id,
-            self.link_of(follower),
-            self._client.constants.JOINT_GEAR,
-            (1.0, 0.0, 0.0),
-            (0.0, 0.0, 0.0),
-            (0.0, 0.0, 0.0),
-        )
-        self._client.changeConstraint(
-            gear,
-            gearRatio=-multiplier,
-            relativePositionTarget=offset,
-            erp=GEAR_ERP,
-            maxForce=GEAR_FORCE,
-        )
+        first, second = self.link_of(leader), self.link_of(follower)
+        gear = tree_motors.couple(self._client, self.bullet_id, first, second, multiplier, offset)
         self._gears.append(gear)
 
     def wake(self) -> None:
@@ -249,12 +229,8 @@ class JointTree:
         """Leave joints to their friction that were driven in the last step and are no more."""
         for number, drive in self._motors.items():
             if drive.mode == "effort" and drive.target:
-                self._client.setJointMotorControl2(
-                    self.bullet_id,
-                    self.link_of(number),
-                    self._client.constants.TORQUE_CONTROL,
-                    force=drive.target,
-                )
+                link = self.link_of(number)
+                tree_motors.force_motor(self._client, self.bullet_id, link, drive.target)
         if self._was_driven:
             for number in sorted(self._was_driven - self._driven):
                 self.release(number)
@@ -285,6 +261,8 @@ class JointTree:
                 self.set(number, position)
             moved |= position != before
             self._last[number] = (position, velocity)
+            if number in self._lawful:
+                self._obey(number, position, velocity)
         if self._was_driven or self._driven:
             self._was_driven, self._driven = self._driven, set()
         if moved:
@@ -304,8 +282,8 @@ class JointTree:
             return True
         if abs(velocity) > STUCK:
             return False
-        torque = self.effort(number)
-        return abs(torque) < SPARE * self._links[number].joint.spec.friction
+        aim, limit = self._lawful.get(number, (0.0, self._links[number].joint.spec.friction))
+        return not aim and abs(self.effort(number)) < SPARE * limit
 
     def ignore(self, other: int) -> None:
         """Let nothing of it collide with the base of another body of the engine."""
@@ -332,12 +310,16 @@ class JointTree:
             return composed(world_from_rest, self._centre)
         return at_origin(world_from_rest, self._links[0].joint)
 
+    def _obey(self, number: int, position: float, velocity: float) -> None:
+        """Tell a joint's motor what its law wants in the next step."""
+        motor = self._laws[number].motor(position, velocity, self.effort(number))
+        if motor != self._lawful.get(number):
+            self._lawful[number] = motor
+            self._motor(number, *motor)
+        if motor[0]:
+            self.wake()
+
     def _motor(self, number: int, velocity: float, force: float) -> None:
         if self._links[number].joint.spec.moves:
-            self._client.setJointMotorControl2(
-                self.bullet_id,
-                self.link_of(number),
-                self._client.constants.VELOCITY_CONTROL,
-                targetVelocity=velocity,
-                force=force,
-            )
+            link = self.link_of(number)
+            tree_motors.velocity_motor(self._client, self.bullet_id, link, velocity, force)

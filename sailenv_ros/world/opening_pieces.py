@@ -7,6 +7,7 @@ doors and drawers on joints; one that moves freely, or comes and goes, keeps the
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 from sailenv_ros.errors import InvalidRequest
@@ -84,15 +85,17 @@ def _entry(piece: ObjectSpec, part: MovingPart) -> ObjectSpec:
             f"name of {part.name!r} of {piece.name!r}", name, f"at most {MAX_NAME} characters"
         )
     (x, y, z), (sx, sy, sz) = part.origin_m, piece.scale
+    factor, (low, high) = _lengthened(part, piece.scale), part.limits
     joint = JointSpec(
         type=part.type,
         parent=piece.name,
         axis=part.axis,
         origin=(x * sx, y * sy, z * sz),
-        limits=_scaled(part, piece.scale),
+        limits=(low * factor, high * factor),
         friction=part.friction,
         damping=part.damping,
         effort=part.effort,
+        **_laws(part, factor),
     )
     fields: dict[str, Any] = {
         key: getattr(piece, key) for key in _LOOKS if key in piece.model_fields_set
@@ -104,10 +107,19 @@ def _entry(piece: ObjectSpec, part: MovingPart) -> ObjectSpec:
     return ObjectSpec(name=name, asset=part.asset.name, joint=joint, **fields)
 
 
-def _scaled(part: MovingPart, scale: Sequence[float]) -> tuple[float, float]:
-    """Return its limits at a scale: what slides goes farther in a larger piece."""
-    low, high = part.limits
+def _lengthened(part: MovingPart, scale: Sequence[float]) -> float:
+    """Return by what factor its way is longer at a scale: what slides goes farther."""
     if part.type == "hinge":
-        return low, high
-    factor = sum(abs(a) * s for a, s in zip(part.axis, scale, strict=True))
-    return low * factor, high * factor
+        return 1.0
+    return sum(abs(a) * s for a, s in zip(part.axis, scale, strict=True))
+
+
+def _laws(part: MovingPart, factor: float) -> dict[str, Any]:
+    """Return what else its joint has, as an entry has it."""
+    found: dict[str, Any] = {}
+    if part.soft_close is not None:
+        found["soft_close"] = asdict(part.soft_close.scaled(factor))
+    if part.detents is not None:
+        clicks = asdict(part.detents.scaled(factor)).items()
+        found["detents"] = {key: value for key, value in clicks if value not in (None, ())}
+    return found

@@ -97,6 +97,10 @@ def set_dynamics(client: BulletClient, body: int, engine_link: int, link: JointL
     """Give a link its friction, damping, inertia and limits."""
     spec, placement = link.joint.spec, link.placement
     rolling = ROLLING_FRICTION if placement.friction else 0.0
+    inertia = placement.asset.inertia
+    if inertia is not None:
+        moments = inertia.moments_kg_m2
+        client.changeDynamics(body, engine_link, localInertiaDiagonal=moments)
     client.changeDynamics(
         body,
         engine_link,
@@ -106,12 +110,8 @@ def set_dynamics(client: BulletClient, body: int, engine_link: int, link: JointL
         angularDamping=0.0,
         rollingFriction=rolling,
         spinningFriction=placement.spinning_friction or rolling,
-        jointDamping=_stable_damping(link),
+        jointDamping=_stable_damping(client, body, engine_link, link),
     )
-    inertia = placement.asset.inertia
-    if inertia is not None:
-        moments = inertia.moments_kg_m2
-        client.changeDynamics(body, engine_link, localInertiaDiagonal=moments)
     low, high = UNLIMITED if spec.limits is None else spec.limits
     if spec.moves:
         client.changeDynamics(
@@ -130,22 +130,22 @@ def set_dynamics(client: BulletClient, body: int, engine_link: int, link: JointL
     )
 
 
-def _stable_damping(link: JointLink) -> float:
+def _stable_damping(client: BulletClient, body: int, engine_link: int, link: JointLink) -> float:
     """Return a joint's damping, as far as the engine's step can bear it.
 
     It applies damping explicitly: more than the link's own inertia in half a step would make its
     joint tremble ever faster.
     """
-    inertia, spec = link.placement.asset.inertia, link.joint.spec
-    if inertia is None or not spec.moves:
+    spec = link.joint.spec
+    if not spec.moves:
         return spec.damping
     own = link.mass_kg
     if spec.type == "hinge":
+        moments = np.asarray(client.getDynamicsInfo(body, engine_link)[2])
         axis = np.asarray(spec.unit_axis)
-        turn = Pose(orientation_xyzw=inertia.axes_xyzw).matrix()[:3, :3]
+        turn = Pose(orientation_xyzw=link.axes_xyzw).matrix()[:3, :3]
         arm = np.cross(axis, np.subtract(link.centre_m, spec.origin))
-        about = (turn.T @ axis) ** 2 @ np.asarray(inertia.moments_kg_m2)
-        own = float(about) + link.mass_kg * float(arm @ arm)
+        own = float((turn.T @ axis) ** 2 @ moments) + link.mass_kg * float(arm @ arm)
     return min(spec.damping, 0.5 * own * STEPS_PER_SECOND)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.hardware import MAGNET
 from sailenv_content.families.hollows import tub_walls, vessel_walls
 from sailenv_content.families.lathe import closed_ring, scaled, smooth_profile, vessel
 from sailenv_content.families.materials import WOODS, glass, metal, paint, wood
@@ -176,7 +177,8 @@ def _shower(b: PieceBuilder, v: Values) -> None:
     ):
         b.box(v.metal, size, (x, y, h - 0.0125))
     at = (wall + 0.006, -wall + 0.016, mid)
-    with b.hinge("door", "door", at=at, axis=(0.0, 0.0, -1.0), opens_deg=95.0, friction=0.4):
+    axis = (0.0, 0.0, -1.0)
+    with b.hinge("door", "door", at=at, axis=axis, opens_deg=95.0, friction=0.4, detents=MAGNET):
         leaf = s - 0.04 - 0.05
         b.box(pane, (0.008, leaf, h - edge - 0.06), (wall, 0.0, mid - 0.005), bevel=0.002)
         with b.part("handle", "handle"):

@@ -7,6 +7,7 @@ from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.contents import FRUIT, stores
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import handle
+from sailenv_content.families.hardware import SEAL
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import PieceMaterial, glass, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
@@ -96,8 +97,13 @@ def _door(
     left = hinge == "left"
     at = (face.high[0], face.high[1] if left else face.low[1], face.middle[2])
     axis = (0.0, 0.0, 1.0 if left else -1.0)
-    with b.hinge(name, "door", at=at, axis=axis, opens_deg=130.0, friction=0.6):
-        b.box(v.face, face.size, face.middle, bevel=v.edge)
+    with b.hinge(name, "door", at=at, axis=axis, opens_deg=130.0, friction=0.6, detents=SEAL):
+        b.box(v.face, face.size, face.middle, bevel=v.edge, collides=False)
+        # The corner behind its free edge swings out by so much, past the door beside it.
+        clear = DOOR_M**2 / (2.0 * float(face.size[1]))
+        low, high = (clear, 0.0) if left else (0.0, clear)
+        solid = face.within((0.0, low, 0.0), (0.0, high, 0.0))
+        b.collide(solid.size, solid.middle)
         liner = Box(
             (face.low[0] - 0.012, room.low[1] + 0.02, room.low[2] + 0.02),
             (face.low[0] + 0.004, room.high[1] - 0.02, room.high[2] - 0.02),

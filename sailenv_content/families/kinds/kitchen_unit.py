@@ -15,6 +15,7 @@ from sailenv_content.families.cabinets import (
 from sailenv_content.families.contents import plates, stores
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, door
+from sailenv_content.families.hardware import DOOR_CLOSE, DRAWER_CLOSE
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import shelf
 from sailenv_content.families.materials import WOODS, PieceMaterial, glass, metal, paint
@@ -55,6 +56,7 @@ def _doors(b: PieceBuilder, v: Values, name: str, fronts: Box, hinge: str) -> No
             handle_z=grip,
             opens_deg=88.0,
             pane=glass(),
+            soft_close=DOOR_CLOSE,
         )
 
 
@@ -102,6 +104,7 @@ def _cabinet(
                     inside,
                     front=v.front if row < 2 else "flat",
                     fill=False,
+                    soft_close=DRAWER_CLOSE,
                 )
         else:
             if kind == "cupboard":

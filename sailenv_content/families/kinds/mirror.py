@@ -10,6 +10,7 @@ from sailenv_content.families.contents import stores
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.framing import frame
 from sailenv_content.families.fronts import handle
+from sailenv_content.families.hardware import MAGNET
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import shelf
 from sailenv_content.families.lathe import closed_ring, scaled
@@ -120,7 +121,7 @@ def _cabinet(b: PieceBuilder, v: Values) -> None:
             float(leaf.middle[2]),
         )
         axis = (0.0, 0.0, 1.0 if left else -1.0)
-        with b.hinge(name, "mirror", at=at, axis=axis, opens_deg=105.0):
+        with b.hinge(name, "mirror", at=at, axis=axis, opens_deg=105.0, detents=MAGNET):
             size = leaf.size
             b.box(
                 v.body, (size[0] - 0.006, size[1], size[2]), leaf.middle - np.array([0.003, 0, 0])

@@ -6,6 +6,7 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.hardware import clicks
 from sailenv_content.families.lathe import smooth_profile
 from sailenv_content.families.materials import fabric, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
@@ -27,7 +28,15 @@ def _valve(b: PieceBuilder, v: Values, x: float, y: float, z: float) -> None:
     at = (x, y + side * 0.058, z)
     turn = (-90.0 * side, 0.0, 0.0)
     rows = [(0, 0), (0.02, 0), (0.024, 0.01), (0.023, 0.055), (0.018, 0.062), (0, 0.062)]
-    with b.hinge("valve", "handle", at=at, axis=(0.0, side, 0.0), opens_deg=270.0, friction=0.1):
+    with b.hinge(
+        "valve",
+        "handle",
+        at=at,
+        axis=(0.0, side, 0.0),
+        opens_deg=270.0,
+        friction=0.1,
+        detents=clicks(0.15, 45.0),
+    ):
         b.form(paint("#eceae5", 0.4), turned(rows, segments=18), at, turn=turn)
 
 

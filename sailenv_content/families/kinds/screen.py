@@ -8,6 +8,7 @@ from sailenv_content.families.appliances import knob_row
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.framing import pictured
+from sailenv_content.families.hardware import catch
 from sailenv_content.families.materials import WOODS, PieceMaterial, metal, paint, printed
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
 from sailenv_content.families.shaping import cushion, extruded, swept, turned
@@ -143,7 +144,15 @@ def _laptop(b: PieceBuilder, v: Values) -> None:
         """Return where a point of the lid is: so far up it, so far before its back."""
         return (at[0] - s * along + c * out, 0.0, at[2] + c * along + s * out)
 
-    with b.hinge("lid", "laptop", at=at, axis=(0.0, 1.0, 0.0), opens_deg=lean + 88.0, friction=0.4):
+    with b.hinge(
+        "lid",
+        "laptop",
+        at=at,
+        axis=(0.0, 1.0, 0.0),
+        opens_deg=lean + 88.0,
+        friction=0.4,
+        detents=catch(0.5, at_deg=lean + 88.0, within_deg=8.0),
+    ):
         tall = d - 0.012
         size = (up - 0.001, w, tall)
         turn = (0.0, -lean, 0.0)

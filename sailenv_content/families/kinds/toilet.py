@@ -6,6 +6,7 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.hardware import LID_CLOSE
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.lathe import closed_ring, scaled, smooth_profile, vessel
 from sailenv_content.families.materials import PieceMaterial, metal, paint, wood
@@ -30,7 +31,14 @@ def _seat(b: PieceBuilder, v: Values, x: float, z: float, *, square: bool = Fals
     for name, low in parts:
         at = (back, 0.0, z + t / 2)
         with b.hinge(
-            name, "lid", at=at, axis=(0.0, -1.0, 0.0), opens_deg=93.0, friction=0.4, damping=0.6
+            name,
+            "lid",
+            at=at,
+            axis=(0.0, -1.0, 0.0),
+            opens_deg=93.0,
+            friction=0.4,
+            damping=0.6,
+            soft_close=LID_CLOSE,
         ):
             if square:
                 outline = rectangle(2 * half, 2 * long, 0.05)

@@ -8,6 +8,7 @@ from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.contents import folded, hung_clothes
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, door, drawer, sliding_doors
+from sailenv_content.families.hardware import DRAWER_CLOSE
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import carcass, four_legs, shelf
 from sailenv_content.families.materials import PieceMaterial, metal, paint, wood
@@ -132,6 +133,7 @@ def _with_drawers(b: PieceBuilder, v: Values) -> None:
             handle_kind=v.handle,
             metal_=v.metal,
             side_gap=0.034,
+            soft_close=DRAWER_CLOSE,
         )
     _doors(b, v.material, _front(inside, v, split, v.height - 0.018), v, v.metal, 2)
 
@@ -170,6 +172,7 @@ def _open(b: PieceBuilder, v: Values) -> None:
             handle_kind="knob",
             metal_=v.metal,
             side_gap=0.03,
+            soft_close=DRAWER_CLOSE,
         )
 
 

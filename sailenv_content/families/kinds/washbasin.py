@@ -9,6 +9,7 @@ from sailenv_content.families.cabinets import CABINET_MATERIALS, cabinet_drawer,
 from sailenv_content.families.contents import stores
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M
+from sailenv_content.families.hardware import DRAWER_CLOSE
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.hollows import tub_walls, vessel_walls
 from sailenv_content.families.lathe import scaled, smooth_profile, vessel
@@ -88,7 +89,15 @@ def _cabinet(b: PieceBuilder, v: Values) -> None:
         b.box(v.scheme[0], (d - 0.1, w - 0.06, v.legs), (d / 2 - 0.04, 0.0, v.legs / 2))
         if v.drawers:
             for number, panel in enumerate(fronts.rows([1.0, 1.0], CLEARANCE_M)):
-                cabinet_drawer(b, v, f"drawer {number + 1}", panel, inside, fill=number == 0)
+                cabinet_drawer(
+                    b,
+                    v,
+                    f"drawer {number + 1}",
+                    panel,
+                    inside,
+                    fill=number == 0,
+                    soft_close=DRAWER_CLOSE,
+                )
         else:
             stores(b, inside.within((0.05, 0.03, 0.0), (0.06, 0.03, 0.2)))
             right, left = fronts.columns([1.0, 1.0], CLEARANCE_M)
@@ -102,7 +111,7 @@ def _bowl(b: PieceBuilder, v: Values) -> None:
     b.box(v.material, (d, w, 0.045), (d / 2, 0.0, low - 0.0225), bevel=0.004)
     outer = Box((0.0, -w / 2, 0.0), (d - 0.01, w / 2, low - 0.046))
     inside, fronts = unit(b, v.scheme[0], outer)
-    cabinet_drawer(b, v, "drawer", fronts, inside)
+    cabinet_drawer(b, v, "drawer", fronts, inside, soft_close=DRAWER_CLOSE)
     r = min(0.17, 0.36 * d)
     rows = smooth_profile(
         np.array([(0.5, 0.0), (0.7, 0.08), (0.92, 0.45), (1.0, 1.0)]) * (r, v.bowl_m), 18

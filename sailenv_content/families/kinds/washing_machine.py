@@ -9,6 +9,7 @@ from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.drums import STEEL, drum, front_with_hole
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import handle
+from sailenv_content.families.hardware import SEAL
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.lathe import closed_ring, sleeve, vessel
 from sailenv_content.families.materials import PieceMaterial, glass, metal, paint
@@ -26,7 +27,8 @@ def _porthole(b: PieceBuilder, v: Values, x: float, radius: float, z: float, nam
     left = v.hinge == "left"
     sign = 1.0 if left else -1.0
     at = (x + 0.012, sign * (radius + 0.03), z)
-    with b.hinge(name, "door", at=at, axis=(0.0, 0.0, sign), opens_deg=110.0, friction=0.8):
+    axis = (0.0, 0.0, sign)
+    with b.hinge(name, "door", at=at, axis=axis, opens_deg=110.0, friction=0.8, detents=SEAL):
         r = radius + 0.026
         loop = [
             (radius - 0.03, 0.004), (r - 0.006, 0.001), (r, 0.008), (r - 0.006, 0.03),

@@ -320,6 +320,42 @@ def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
         assert {n for n, d in named.items() if not d.stands and not d.instance.is_part} == moving
 
 
+@pytest.mark.parametrize(
+    ("piece", "part", "opened", "ajar", "settled"),
+    [
+        ("kitchen_unit~modern:3", "cabinet 2 right door", 1.5, 0.4, 0.0),
+        ("wardrobe~classic:3", "drawer 1", 0.3, 0.05, 0.0),
+        ("wardrobe~classic:3", "left door", 1.5, 0.06, 0.0),
+        ("toilet~wall:3", "lid", 1.6, 0.5, 0.0),
+        ("oven~cooker:3", "knob 1", 4.0, 0.3, np.pi / 6),
+        ("oven~cooker:3", "door", 1.5, 0.06, 0.0),
+        ("washbasin~pedestal:3", "lever", 0.6, 0.2, np.pi * 17.5 / 180),
+        ("fridge~double:3", "door", 1.5, 0.06, 0.0),
+    ],
+)
+def test_what_opens_shuts_or_clicks_by_itself(
+    piece: str, part: str, opened: float, ajar: float, settled: float
+) -> None:
+    """From shut it opens when it is asked to; let go ajar or between clicks, it settles."""
+    with closing(world_of({"name": "it", "asset": piece, "static": True})) as world:
+        number = world.find(f"it {part}")
+
+        def place() -> float:
+            joint = world.joint(number)
+            assert joint is not None
+            return joint.position
+
+        world.step(20)
+        assert place() == 0.0
+        world.set_joint(number, opened, 2.0)
+        world.step(485)
+        # What clicks goes on to its detent.
+        assert place() == pytest.approx(opened, abs=0.3)
+        world.set_joint(number, ajar)
+        world.step(720)
+        assert place() == pytest.approx(settled, abs=1e-3)
+
+
 def test_a_door_of_a_larger_piece_turns_about_its_own_edge() -> None:
     """What lies on the axis of the piece at scale 1 lies on that of the larger one."""
     name = "wardrobe~hinged:7"

@@ -135,6 +135,48 @@ VALUES = {
         "  - {name: a, asset: cube}\n  - {name: a, asset: cube}",
         "4:12: objects[1].name: must be unique among objects, but objects[0] has 'a' too",
     ),
+    "soft close without limits": (
+        "  - {name: a, asset: cube, joint: {type: slide, soft_close: {within: 0.1, speed: 1}}}",
+        "3:61: objects[0].joint.soft_close: needs limits, at one of which the joint is shut",
+    ),
+    "soft close of no width": (
+        "  - {name: a, asset: cube, joint: {type: slide, limits: [0, 1], soft_close: "
+        "{within: 0, speed: 1}}}",
+        "3:86: objects[0].joint.soft_close.within: must be a number from 0.0001 to 10000, got 0",
+    ),
+    "soft close without a speed": (
+        "  - {name: a, asset: cube, joint: {type: slide, limits: [0, 1], soft_close: "
+        "{within: 0.1}}}",
+        "3:77: objects[0].joint.soft_close.speed: is missing (at the end at most, and with which "
+        "it shuts by itself [rad/s] or [m/s])",
+    ),
+    "detents nowhere": (
+        "  - {name: a, asset: cube, joint: {type: hinge, detents: {strength: 1}}}",
+        "3:58: objects[0].joint.detents.every: is needed, or at: where a joint has its detents",
+    ),
+    "detents by two keys": (
+        "  - {name: a, asset: cube, joint: {type: hinge, detents: {strength: 1, every: 1, "
+        "at: [0, 1]}}}",
+        "3:86: objects[0].joint.detents.at: cannot stand beside every; give one of: every, at",
+    ),
+    "a single detent without reach": (
+        "  - {name: a, asset: cube, joint: {type: hinge, detents: {strength: 1, at: [0]}}}",
+        "3:58: objects[0].joint.detents.within: is needed beside a single detent",
+    ),
+    "a detent beyond the limits": (
+        "  - {name: a, asset: cube, joint: {type: hinge, limits: [0, 1], detents: {strength: 1, "
+        "at: [0, 2]}}}",
+        "3:96: objects[0].joint.detents.at[1]: must be within the limits, from 0 to 1, got 2",
+    ),
+    "detents of which none is within the limits": (
+        "  - {name: a, asset: cube, joint: {type: hinge, limits: [0.1, 1], detents: "
+        "{strength: 1, every: 2}}}",
+        "3:97: objects[0].joint.detents.every: has no multiple within the limits, from 0.1 to 1",
+    ),
+    "detents of what is fixed": (
+        "  - {name: a, asset: cube, joint: {type: fixed, detents: {strength: 1, every: 1}}}",
+        "3:58: objects[0].joint.detents: means something only for a hinge or a slide",
+    ),
 }
 
 

@@ -202,6 +202,15 @@ def _opened(file: Path) -> tuple[Doubles, Doubles, Doubles, Doubles]:
     return data.xipos[model.jnt_bodyid].copy(), axes, model.jnt_range.copy(), masses
 
 
+@pytest.mark.parametrize(("suffix", "name"), [(".xml", "MJCF"), (".urdf", "URDF")])
+def test_what_joints_do_by_themselves_is_told_as_lost(
+    tmp_path: Path, suffix: str, name: str
+) -> None:
+    """Of four doors with magnets."""
+    lost = export_asset("wardrobe~hinged:7", tmp_path / f"wardrobe{suffix}").losses
+    assert f"soft close and detents of 4 joints have no equal in {name}" in lost
+
+
 def test_names_of_urdf_are_identifiers(tmp_path: Path) -> None:
     """ROS wants no spaces in names of links and joints."""
     export_asset("wardrobe~hinged:7", tmp_path / "wardrobe.urdf")
