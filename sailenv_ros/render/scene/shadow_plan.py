@@ -32,11 +32,11 @@ receive shadows and cast none: they would stretch the shadow map to their own si
 FARTHEST_M = 1e5
 
 BOUNDS_STEP_M = 0.125
-"""What the map encloses ends at multiples of this [m]: what moves in a room leaves the map, and so
-what was drawn into it at rest, as it is."""
+"""Bounds of the map are multiples of this [m]: things that move in a room leave the map, and so
+all that was drawn into it at rest, as it is."""
 
 SETTLED_UPDATES = 10
-"""What stands where it is for so many updates is drawn into the second map, too."""
+"""Updates after which a thing that stands still is drawn into the second map, too."""
 
 SIZE_PX = 1024
 

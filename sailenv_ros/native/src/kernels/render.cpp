@@ -224,8 +224,8 @@ SAILENV_KERNEL(draw_picture)
 // Draws what a directional light sees into a shadow map: 1 - depth of the nearest surface. Rows of
 // `inverse_depth` and `resting` hold `size` + ROW_PADDING numbers. `map_from_world` (4, 4) leads to
 // pixels (integers are centres) and depth, 0 to 1. Without `resting` the map is cleared first, else
-// it begins as a copy of that, or as it is if it is the same. `changed` has a number for each 16 rows: 1 where the map differs
-// from `resting`.
+// it begins as a copy of that, or as it is if it is the same. `changed` has a number for each 16
+// rows: 1 where the map differs from `resting`.
 SAILENV_KERNEL(draw_shadow_map)
 (int64_t threads, sailenv::DrawingScratch** handle, const double* map_from_world,
  const sailenv::Instances* instances, const sailenv::DrawList* parts, int64_t size,
