@@ -207,7 +207,7 @@ def clothes() -> None:
         assert rig is not None
         figure = figure_of(rig)
         stride = figure.stride
-        feet = standing_feet(0.0, 0.0, 0.0, stride.width_m)
+        feet = standing_feet(0.0, 0.0, 0.0, stride)
         way = way_along(feet, [(0.0, 0.0), (3.0, 0.0)], stride)
         worn = {
             place

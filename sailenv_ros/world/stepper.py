@@ -1,4 +1,4 @@
-"""A person's steps: the way that it goes, foot by foot, round others and up to its end.
+"""Steps of a person or an animal: the way that it goes, foot by foot, round others, to its end.
 
 Knows the crowd around, and not the engine; what is done where a way ends is told elsewhere.
 """
@@ -22,6 +22,7 @@ from sailenv_ros.postures.footsteps import (
     way_to_stand,
     way_to_turn,
 )
+from sailenv_ros.postures.gaits import gait_of
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
@@ -38,12 +39,12 @@ _BLOCKED_S = 1.2
 
 
 class Stepper:
-    """One person on its feet.
+    """One person, or an animal, on its feet.
 
     Parameters
     ----------
     name : str
-        Of the person.
+        Of it.
     asset : Asset
         With a rig.
     scale : float
@@ -64,7 +65,7 @@ class Stepper:
     def __init__(self, name: str, asset: Asset, scale: float) -> None:
         self._name, self._scale = name, scale
         self._actor = Actor(name=name, asset=asset, scale=scale, floor_m=0.0)
-        self._figure = self._actor.figure
+        self._gait = gait_of(asset)
         self.crowd: Crowd | None = None
         self.problem = ""
         self._looks_at = ""
@@ -75,7 +76,8 @@ class Stepper:
 
     @property
     def _size(self) -> BodySize:
-        return body_size(self._figure.height_m * 1.12 * self._scale, self._actor.floor_m)
+        gait = self._gait
+        return body_size(gait.height_m * self._scale, gait.radius, self._actor.floor_m)
 
     @property
     def _place(self) -> Place:
@@ -92,9 +94,9 @@ class Stepper:
         self._looks_at = ""
         self.matrix = self._matrix_of_moment()
 
-    def _feet_at(self, matrix: Doubles) -> tuple[FootPrint, FootPrint]:
-        width = self._figure.stride.width_m * self._scale
-        return standing_feet(float(matrix[0, 3]), float(matrix[1, 3]), yaw_of(matrix), width)
+    def _feet_at(self, matrix: Doubles) -> tuple[FootPrint, ...]:
+        x, y = float(matrix[0, 3]), float(matrix[1, 3])
+        return standing_feet(x, y, yaw_of(matrix), self._stride())
 
     def _moment(self) -> Moment:
         if self._way is not None:
@@ -116,12 +118,7 @@ class Stepper:
         ])  # fmt: skip
 
     def _stride(self) -> Stride:
-        stride = self._figure.stride
-        return replace(
-            stride,
-            length_m=stride.length_m * self._scale,
-            width_m=stride.width_m * self._scale,
-        )
+        return self._gait.stride.scaled(self._scale)
 
     def _go(self, place: Place, yaw: float | None) -> bool:
         if self.crowd is None:

@@ -1,4 +1,4 @@
-"""A person's way through the world: where it walks and looks, and what it does on the spot.
+"""Way of a person or an animal through the world: where it walks and looks, what it does there.
 
 Told by behaviours, moved by time. Knows the crowd around, and not the engine. What it does where a
 way ends is an activity of `world.activities`.
@@ -16,7 +16,6 @@ from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.behaviours.person import Activity, ClipPlay
 from sailenv_ros.postures.reaching import with_carrying_arm
 from sailenv_ros.postures.skeleton import Posture
-from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Held, Instant, SpotActivity
@@ -36,12 +35,12 @@ _STAND_OFF_M = 0.42
 
 
 class Walker(Stepper):
-    """One person on its way; a `behaviours.person.Person`.
+    """One person, or an animal, on its way; a `behaviours.person.Person`.
 
     Parameters
     ----------
     name : str
-        Of the person.
+        Of it.
     asset : Asset
         With a rig.
     scale : float
@@ -92,7 +91,7 @@ class Walker(Stepper):
         """Where its root and joints are now, in the body frame before the scale."""
         look = 0.0, 0.0
         if self._looks_at and self.crowd is not None:
-            eyes_m = self._figure.height_m * self._scale
+            eyes_m = self._gait.eyes_m * self._scale
             look = self.crowd.look_deg(self._looks_at, self.matrix, eyes_m)
         now = Instant(
             moment=self._own_moment(),
@@ -102,7 +101,7 @@ class Walker(Stepper):
         )
         if self._does is not None and self._way is None:
             return self._does.posture(now)
-        posture = walking_posture(
+        posture = self._gait.posture(
             self._actor.rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg
         )
         return posture if self.held is None else with_carrying_arm(self._actor.rig, posture)

@@ -1,4 +1,4 @@
-"""A person's keypoints in a frame: where they are in the picture, and what hides them."""
+"""Keypoints and joints of who has a skeleton: where they are in a frame, what hides them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ def skeleton_of(frame: FrameData, instance_id: int) -> Skeleton:
     """
     found = {} if frame.states is None else frame.states.skeletons
     if instance_id not in found:
-        raise InvalidRequest("instance id", instance_id, f"that of a person: {sorted(found)}")
+        accepted = f"that of a person or an animal: {sorted(found)}"
+        raise InvalidRequest("instance id", instance_id, accepted)
     return found[instance_id]
 
 
@@ -46,10 +47,10 @@ def person_points(
     names: tuple[str, ...],
     world: NDArray[np.float64],
 ) -> Keypoints:
-    """Return points of a person, such as its keypoints or its joints, as a frame sees them.
+    """Return points of a person or an animal, its keypoints or joints, as a frame sees them.
 
-    A point is seen where the picture shows the person at its pixel, with the point no deeper than
-    flesh is, or what lies behind the person.
+    A point is seen where the picture shows its owner at its pixel, with the point no deeper than
+    flesh is, or what lies behind the owner.
 
     Parameters
     ----------
