@@ -163,7 +163,7 @@ def anatomy_of(look: AnimalLook) -> Anatomy:
     return Anatomy(look=look, joints=joints, head_m=size * unit)
 
 
-_EARS = {"cat": (0.40, 0.27, 0.42), "dog": (0.24, 0.22, 0.28)}
+_EARS = {"cat": (0.40, 0.27, 0.42), "dog": (0.25, 0.19, 0.235)}
 """Where ears begin, from the head's joint, over the head's length."""
 
 

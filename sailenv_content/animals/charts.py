@@ -19,7 +19,7 @@ __all__ = ["Layout", "layout_of"]
 Doubles = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-_GAP_PX = 3
+_GAP_PX = 6
 _REACH_PX = 4.0
 _PLANES = ((1, 2), (0, 2), (0, 1))
 """Axes of the picture for triangles that face x, y and z."""
@@ -61,7 +61,9 @@ class Layout:
         return np.einsum("nk,nkj->nj", weights[there].astype(np.float64), rows), there
 
 
-def layout_of(vertices: Doubles, triangles: Indices, side: int, low_m: float) -> Layout:
+def layout_of(
+    vertices: Doubles, triangles: Indices, side: int, low_m: float, apart: NDArray[np.bool_]
+) -> Layout:
     """Return a layout of a mesh.
 
     Parameters
@@ -73,6 +75,8 @@ def layout_of(vertices: Doubles, triangles: Indices, side: int, low_m: float) ->
         Of the picture [px].
     low_m : float
         Height below which what faces up or down is seen apart [m].
+    apart : (T,) bool
+        Triangles that are seen apart from all others.
     """
     corners = vertices[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -80,12 +84,12 @@ def layout_of(vertices: Doubles, triangles: Indices, side: int, low_m: float) ->
     faces = normals[np.arange(len(axis)), axis] > 0.0
     middle = corners.mean(axis=1)
     split = np.choose(axis, [middle[:, 0] > 0.0, middle[:, 1] > 0.0, middle[:, 2] > low_m])
-    chart = axis * 4 + faces * 2 + split
+    chart = 12 * apart + axis * 4 + faces * 2 + split
     sizes, pieces = [], []
     for number in np.unique(chart).tolist():
         chosen = np.flatnonzero(chart == number)
         used, local = np.unique(triangles[chosen], return_inverse=True)
-        flat = vertices[used][:, _PLANES[number // 4]]
+        flat = vertices[used][:, _PLANES[number % 12 // 4]]
         flat = flat - flat.min(axis=0)
         sizes.append(flat.max(axis=0))
         pieces.append((used, local.reshape(-1, 3), flat))

@@ -84,7 +84,8 @@ class CoatPainter:
 
     def _underside(self, own: Doubles, head: Doubles, is_head: Doubles, marks: Doubles) -> Doubles:
         x, y, z = own.T
-        low = _step(z, 0.60 + 0.04 * self._noise(4.0 * own), 0.16) * (1.0 - 0.75 * marks[:, 1])
+        low = _step(z, 0.60 + 0.04 * self._noise(4.0 * own), 0.16)
+        low *= 1.0 - np.clip(1.8 * marks[:, 1], 0.0, 1.0)
         inner = np.clip(marks[:, 1], 0.0, 1.0) * _step(np.abs(y), 0.11, 0.03) * _step(z, 0.55, 0.2)
         chest = _step(np.abs(y), 0.10, 0.08) * np.clip((x - 0.42) / 0.1, 0.0, 1.0)
         trunk = np.maximum.reduce([low, inner, 0.8 * chest * _step(z, 0.80, 0.15)])
@@ -110,9 +111,9 @@ class CoatPainter:
         x, y, z = own.T
         wobble = self._noise(3.2 * own)
         limb, tail = np.clip(marks[:, 1], 0.0, 1.0), marks[:, 2]
-        torso = _bands(x / 0.135 + 0.35 * wobble + 0.5 * (z - 0.8), 0.30)
+        torso = _bands(x / 0.105 + 0.55 * wobble + 0.9 * (z - 0.8), 0.34)
         torso *= np.clip((z - 0.54) / 0.12, 0.0, 1.0)
-        torso *= np.clip(1.1 + 0.9 * self._noise(5.0 * own + 3.0), 0.25, 1.0)
+        torso *= np.clip(0.85 + 1.0 * self._noise(7.0 * own + 3.0), 0.12, 0.85)
         back = np.exp(-((y / 0.035) ** 4)) * (z > 0.80) * (x < 0.5)
         legs = _bands(z / 0.095 + 0.2 * wobble, 0.22) * np.clip((z - 0.10) / 0.06, 0.0, 1.0)
         legs *= np.clip((np.abs(y) - 0.09) / 0.03, 0.0, 1.0)
@@ -131,13 +132,13 @@ class CoatPainter:
         edge = 0.66 + 0.05 * self._noise(5.0 * own) + 0.25 * np.clip(x - 0.28, 0.0, 1.0)
         edge += 0.2 * np.clip(-0.40 - x, 0.0, 1.0)
         back = _step(-z, -edge, 0.04) * (1.0 - np.clip(1.6 * marks[:, 1] - 0.5, 0.0, 1.0))
-        back *= _step(x, 0.50, 0.08)
+        back *= _step(x, 0.46 + 0.05 * self._noise(6.0 * own) + 0.25 * (z - 0.9), 0.05)
         tail = (marks[:, 2] > 0.04) * (marks[:, 2] < 0.62)
         return np.asarray((1.0 - is_head) * np.maximum(back, tail), np.float64)
 
     def _patches(self, own: Doubles, head: Doubles, is_head: Doubles) -> Doubles:
-        x, _, z = own.T
-        spots = _step(-self._noise(2.6 * own), -0.55, 0.12) * (z > 0.5)
+        z = own[:, 2]
+        spots = _step(-self._noise(2.3 * own + 7.0), -0.30, 0.12) * (z > 0.5)
         u, v, w = head.T
         mask = np.clip((np.abs(v + 0.02) - 0.055) / 0.03, 0, 1) * _step(u, 0.66, 0.06)
         mask *= np.clip((w + 0.12 + 0.04 * self._noise(6.0 * own)) / 0.05, 0.0, 1.0)

@@ -83,15 +83,17 @@ widths, and how much it is cupped; over the head's length."""
 
 def _pricked(kind: str) -> Sheet:
     rise = np.linspace(0.0, 1.0, _ROWS)
-    tall, broad = (0.52, 0.235) if kind == "cat" else (0.46, 0.165)
-    lean = np.array([-0.02, 0.30, 1.0]) if kind == "cat" else np.array([-0.05, 0.16, 1.0])
+    tall, broad = (0.56, 0.225) if kind == "cat" else (0.50, 0.165)
+    lean = np.array([-0.02, 0.24, 1.0]) if kind == "cat" else np.array([-0.05, 0.14, 1.0])
     lean = lean / np.linalg.norm(lean)
     look = _turn(32.0 if kind == "cat" else 28.0, 0.0) @ np.array([1.0, 0.0, 0.12])
     look = look - (look @ lean) * lean
     look /= np.linalg.norm(look)
     across = np.cross(look, lean)
-    middles = (rise * tall - 0.13)[:, None] * lean + 0.04 * (rise**2)[:, None] * look
+    middles = (rise * tall - 0.17)[:, None] * lean + 0.04 * (rise**2)[:, None] * look
     wide = broad * np.maximum(1.0 - rise**1.25, 0.0) ** 0.9 + 0.010
+    # Its base lies within the skull.
+    wide *= np.interp(rise, [0.0, 0.32], [0.45, 1.0])
     ones = np.ones((_ROWS, 1))
     return middles, -across * ones, look * ones, wide, 0.42 * np.ones(_ROWS)
 
@@ -99,8 +101,8 @@ def _pricked(kind: str) -> Sheet:
 def _hanging(kind: str) -> Sheet:
     share = np.linspace(0.0, 1.0, _ROWS)
     # Out of the skull, over, and down beside the cheek.
-    out = np.interp(share, [0.0, 0.22, 0.45, 1.0], [-0.10, 0.03, 0.075, 0.105])
-    down = np.interp(share, [0.0, 0.12, 0.25, 1.0], [0.00, 0.045, 0.01, -0.60])
+    out = np.interp(share, [0.0, 0.22, 0.45, 1.0], [-0.12, 0.035, 0.085, 0.10])
+    down = np.interp(share, [0.0, 0.12, 0.25, 1.0], [-0.03, 0.025, 0.00, -0.56])
     ahead = np.interp(share, [0.0, 1.0], [0.0, 0.11])
     middles = np.column_stack([ahead, out, down])
     way = np.gradient(middles, axis=0)
@@ -110,7 +112,8 @@ def _hanging(kind: str) -> Sheet:
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     inwards = np.cross(across, way)
     inwards *= np.where(inwards[:, 1] > 0.0, -1.0, 1.0)[:, None]
-    wide = 0.17 * np.interp(share, [0.0, 0.3, 0.65, 0.88, 1.0], [0.62, 0.85, 1.0, 0.78, 0.15])
+    wide = 0.175 * np.interp(share, [0.0, 0.3, 0.6], [0.40, 0.82, 1.0])
+    wide *= np.sqrt(np.clip(1.03 - np.clip((share - 0.6) / 0.4, 0.0, 1.0) ** 2, 0.0, 1.0))
     return middles, across, inwards, wide, 0.16 * np.ones(_ROWS)
 
 
@@ -144,7 +147,7 @@ def eye(anatomy: Anatomy, side: str, *, rows: int = 10, count: int = 16) -> Piec
     middle = anatomy["head"] + anatomy.head_m * np.array([x, sign * y, z])
     vertices = middle + 0.97 * radius * anatomy.head_m * normals
     uvs = 0.5 + 0.5 * own[:, 1:] / np.maximum(1.0 + own[:, :1], 0.2)
-    return Piece("head", vertices, normals, uvs, _lofted(rows - 2, count))
+    return Piece("head", vertices, normals, uvs, _lofted(rows - 2, count)[:, ::-1])
 
 
 def _turn(yaw_deg: float, pitch_deg: float) -> Doubles:

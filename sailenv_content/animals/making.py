@@ -14,7 +14,7 @@ from sailenv_content.animals.charts import Layout, layout_of
 from sailenv_content.animals.coats import MARKS, CoatPainter, marks_of
 from sailenv_content.animals.features import Piece, ear, eye
 from sailenv_content.animals.looks import AnimalLook
-from sailenv_content.animals.shape import body_of, grid_of
+from sailenv_content.animals.shape import EYE, body_of, grid_of
 from sailenv_content.animals.surface import surface_of
 from sailenv_content.animals.weights import dense_weights
 from sailenv_content.people.rigging import strongest
@@ -92,11 +92,15 @@ def animal_arrays(anatomy: Anatomy) -> Arrays:
     painter = CoatPainter(anatomy)
     known = np.concatenate([vertices, marks], axis=1)
     bones, weights = strongest(dense)
+    in_socket = _in_sockets(anatomy, vertices)
     is_head = (marks[triangles][..., 0] > 0.5).all(axis=1)
     found: dict[str, NDArray[np.generic]] = {}
     for part, chosen, side in (("body", ~is_head, BODY_PX), ("head", is_head, HEAD_PX)):
-        low = _LOW * anatomy.unit if part == "body" else float(anatomy["head"][2])
-        layout = layout_of(vertices, triangles[chosen], side, low)
+        # What is below the eyes, their sockets too, lies below brows.
+        eyes = float(anatomy["head"][2]) + EYE[anatomy.look.kind][0][2] * anatomy.head_m
+        low = _LOW * anatomy.unit if part == "body" else eyes
+        own = triangles[chosen]
+        layout = layout_of(vertices, own, side, low, in_socket[own].any(axis=1))
         at = layout.sources
         found |= _mesh_arrays(part, vertices[at], normals[at], layout.uvs, layout.triangles)
         found[f"{part} bones"], found[f"{part} weights"] = bones[at], weights[at]
@@ -115,6 +119,14 @@ def animal_arrays(anatomy: Anatomy) -> Arrays:
                 _ear_picture(anatomy, painter, piece) if picture is None else picture
             )
     return found
+
+
+def _in_sockets(anatomy: Anatomy, vertices: Doubles) -> NDArray[np.bool_]:
+    """Return (V,): which vertices are in what is carved out for the eyes."""
+    place, radius, _ = EYE[anatomy.look.kind]
+    own = (vertices - anatomy["head"]) / anatomy.head_m
+    away = np.linalg.norm(own * [1.0, 0.0, 1.0] + np.abs(own) * [0.0, 1.0, 0.0] - place, axis=1)
+    return np.asarray(away < 1.12 * radius)
 
 
 def _mesh_arrays(
@@ -159,6 +171,8 @@ def _ear_picture(anatomy: Anatomy, painter: CoatPainter, piece: Piece) -> Textur
     values, there = layout.spread(piece.vertices)
     marks = np.zeros((len(values), MARKS))
     marks[:, 0] = 1.0
+    # As above its base, however far it hangs down.
+    values[:, 2] = np.maximum(values[:, 2], anatomy[piece.joint][2])
     colours = painter.at(values, marks)
     rows, columns = np.nonzero(there)
     u = (columns + 0.5) / side

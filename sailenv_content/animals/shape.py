@@ -39,7 +39,7 @@ _TRUNK = {
 """Rows of x, the lowest z, the highest z and half the width, over the height of the withers."""
 
 EYE = {
-    "cat": ((0.74, 0.205, 0.150), 0.105, 24.0),
+    "cat": ((0.74, 0.205, 0.145), 0.100, 24.0),
     "dog": ((0.50, 0.155, 0.175), 0.066, 28.0),
 }
 """Middle of the left eye from the head's joint, its radius, over the head's length; how far it
@@ -63,7 +63,7 @@ def grid_of(anatomy: Anatomy, body: Body) -> tuple[Doubles, Doubles, Doubles]:
     unit = anatomy.unit
     low = np.min([solid.low for solid in body.solids], axis=0)
     high = np.max([solid.high for solid in body.solids], axis=0)
-    coarse, fine = 0.035 * unit, 0.0165 * unit
+    coarse, fine = 0.041 * unit, 0.0178 * unit
     chin = float(anatomy["head"][2]) - 0.33 * anatomy.head_m
     neck = float(anatomy["head"][0]) + 0.1 * anatomy.head_m
     across = np.arange(0.5 * fine, high[1] + fine, fine)
@@ -101,7 +101,7 @@ def _trunk(anatomy: Anatomy) -> list[Solid]:
     chest = first + unit * np.array([-0.06, 0.0, -0.20])
     return [
         loft("trunk", rows, (0.05 * unit, 0.06 * unit), 0.05 * unit),
-        ellipsoid("spine03", chest, unit * np.array([0.13, 0.105, 0.14]), 0.09 * unit),
+        ellipsoid("spine03", chest, unit * np.array([0.105, 0.10, 0.13]), 0.09 * unit),
         tube("neck01", [base, second], neck[:2], 0.12 * unit, 0.92),
         tube("neck02", [second, nape], neck[1:], 0.06 * unit, 0.95),
     ]
