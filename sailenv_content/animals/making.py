@@ -100,7 +100,7 @@ def animal_arrays(anatomy: Anatomy) -> Arrays:
         eyes = float(anatomy["head"][2]) + EYE[anatomy.look.kind][0][2] * anatomy.head_m
         low = _LOW * anatomy.unit if part == "body" else eyes
         own = triangles[chosen]
-        layout = layout_of(vertices, own, side, low, in_socket[own].any(axis=1))
+        layout = layout_of(vertices, own, side, low, np.asarray(in_socket[own].any(axis=1)))
         at = layout.sources
         found |= _mesh_arrays(part, vertices[at], normals[at], layout.uvs, layout.triangles)
         found[f"{part} bones"], found[f"{part} weights"] = bones[at], weights[at]

@@ -41,6 +41,21 @@ _BLADE_DEG = 30.0
 _PADS_DEG = (42.0, 40.0)
 """How far a paw hangs in the middle of a swing, in front and behind [deg]."""
 
+_SPINE = (
+    ("root", -0.4, 62.0),
+    ("spine01", -0.2, 60.0),
+    ("spine02", 0.1, 52.0),
+    ("spine03", 0.4, 36.0),
+)
+"""Vertebrae, their shares of a bend of the trunk, and how upright they are at most [deg]."""
+
+_RUMP = 0.40
+"""Height of the root on the haunches, over that at rest."""
+
+_HOCK_DEG, _TAIL_DEG = -53.0, 16.0
+"""On the haunches: roll of the bones above the paws behind, which lie on the floor then; how far
+the tail rises [deg]."""
+
 _MOST_LOOK_DEG = (75.0, 40.0)
 _MOST_BEND_DEG = 24.0
 _GLANCE_S = 2.6
@@ -54,6 +69,7 @@ def four_legged_posture(
     *,
     seed: int = 0,
     look_deg: tuple[float, float] = (0.0, 0.0),
+    sits: float = 0.0,
 ) -> Posture:
     """Return the posture of an animal on its way, in the frame of its body there.
 
@@ -69,6 +85,8 @@ def four_legged_posture(
         Sets those of animals apart.
     look_deg : (2,) tuple of float
         Where it looks: to the left and down [deg]; both 0 for round about.
+    sits : float
+        How far it has sat down on its haunches, 0 to 1.
     """
     figure = animal_figure_of(rig)
     own = [own_print(moment, place) for place in moment.feet]
@@ -79,7 +97,10 @@ def four_legged_posture(
         paws[swing] = _Paw.swung(
             figure, swing, own[swing], own_print(moment, moment.goal), moment.share
         )
-    root, turns = _trunk(rig, figure, paws, moment)
+    for paw in paws[2:]:
+        paw.roll_deg += sits * _HOCK_DEG
+        paw.knee_up = 0.6 * sits
+    root, turns = _trunk(rig, figure, paws, moment, sits)
     blade = {}
     for paw in paws[:2]:
         ahead = float(np.clip(paw.ahead / figure.legs_m[paw.number], -0.9, 0.9))
@@ -96,7 +117,7 @@ def four_legged_posture(
     breath = float(np.sin(2.0 * np.pi * (time_s / 2.3 + 0.37 * seed)))
     turns["belly"] = turns["spine02"] @ turn_about("y", 0.9 * breath)
     turns |= _head(turns["spine03"], time_s, seed, look_deg)
-    turns |= _tail(rig, turns["root"], time_s, seed)
+    turns |= _tail(rig, turns["root"], time_s, seed, sits)
     return Posture(root_m=root, turns=turns)
 
 
@@ -118,7 +139,7 @@ class _Paw:
         rest = figure.paws[number]
         self.joint = np.array([place.x, place.y, rest[2]])
         self.yaw = place.yaw
-        self.hangs_deg = 0.0
+        self.hangs_deg = self.knee_up = 0.0
         self.ahead = place.x - float(rest[0])
         self.away = float(np.hypot(self.ahead, place.y - rest[1]))
         behind = -self.ahead / float(figure.legs_m[number])
@@ -159,7 +180,7 @@ class _Paw:
 
 
 def _trunk(
-    rig: Rig, figure: AnimalFigure, paws: list[_Paw], moment: Moment
+    rig: Rig, figure: AnimalFigure, paws: list[_Paw], moment: Moment, sits: float
 ) -> tuple[Doubles, dict[str, Doubles]]:
     """Return where the root is, and the turns of the trunk."""
     sinks, sides, yaws = [], [], []
@@ -176,22 +197,33 @@ def _trunk(
     heading = float(np.degrees(np.arctan2(sides[0] - sides[1], figure.base_m)))
     pitch = float(np.degrees((sinks[1] - sinks[0]) / figure.base_m))
     bend = float(np.clip(np.degrees(yaws[0] - yaws[1]), -_MOST_BEND_DEG, _MOST_BEND_DEG))
-    level = turn_about("y", pitch)
-
-    def vertebra(share: float) -> Doubles:
-        return turn_about("z", heading + share * bend) @ level
-
-    turns = {
-        name: vertebra(share)
-        for name, share in (("root", -0.4), ("spine01", -0.2), ("spine02", 0.1), ("spine03", 0.4))
-    }
-    moved = np.array([0.0, 0.5 * (sides[0] + sides[1]) + sway, 0.5 * (sinks[0] + sinks[1])])
     # The vertebrae from the root to the chest, bent, about their middle.
-    chain = [rig.head(name) for name in turns]
-    along = np.zeros(3)
-    for turn, begin, end in zip(turns.values(), chain[:-1], chain[1:], strict=False):
-        along = along + turn @ (end - begin)
-    return figure.middle + moved - 0.5 * along, turns
+    chain = [rig.head(name) for name, _, _ in _SPINE]
+
+    def bent(sits: float) -> tuple[Doubles, dict[str, Doubles]]:
+        along, turns = np.zeros(3), {}
+        for number, (name, share, upright) in enumerate(_SPINE):
+            yaw = turn_about("z", heading + share * bend)
+            turns[name] = yaw @ turn_about("y", pitch - sits * upright)
+            if number < 3:
+                along = along + turns[name] @ (chain[number + 1] - chain[number])
+        return along, turns
+
+    along, turns = bent(0.0)
+    moved = np.array([0.0, 0.5 * (sides[0] + sides[1]) + sway, 0.5 * (sinks[0] + sinks[1])])
+    standing = figure.middle + moved - 0.5 * along
+    if not sits:
+        return standing, turns
+    # The chest stays above the paws in front, and the trunk is as upright as the rump is low.
+    chest = 0.5 * (paws[0].joint + paws[1].joint) + chain[3] - figure.paws[:2].mean(axis=0)
+    low = _RUMP * float(chain[0][2])
+    least, most = 0.0, 1.0
+    for _ in range(12):
+        middle = 0.5 * (least + most)
+        drops = float(chest[2] - bent(middle)[0][2])
+        least, most = (middle, most) if drops > low else (least, middle)
+    along, turns = bent(sits * most)
+    return (1.0 - sits) * standing + sits * (chest - along), turns
 
 
 def _above_reach(rig: Rig, paw: _Paw, top: Doubles) -> float:
@@ -224,10 +256,11 @@ def _leg(rig: Rig, paw: _Paw, top: Doubles) -> dict[str, Doubles]:
         joint, turn = paw.above(offset, far)
     # Knees point forwards, elbows backwards.
     pole = _FORWARD if paw.number >= 2 else -_FORWARD
-    points = turn_about("z", float(np.degrees(paw.yaw))) @ pole
+    facing = turn_about("z", float(np.degrees(paw.yaw)))
+    points = facing @ pole + np.array([0.0, 0.0, paw.knee_up])
     bent, end = two_bones(top, joint, first, second, points)
     upper, lower = bend_bones(rest[:3], (top, bent, end), pole, points)
-    lies = turn_about("z", float(np.degrees(paw.yaw))) @ turn_about("y", paw.hangs_deg)
+    lies = facing @ turn_about("y", paw.hangs_deg)
     return dict(zip(names, (upper, lower, turn, lies), strict=True))
 
 
@@ -265,12 +298,19 @@ def _glance(time_s: float, seed: int, kind: int) -> float:
     return chosen(number - 1) + eased * (chosen(number) - chosen(number - 1))
 
 
-def _tail(rig: Rig, pelvis: Doubles, time_s: float, seed: int) -> dict[str, Doubles]:
+def _tail(rig: Rig, pelvis: Doubles, time_s: float, seed: int, sits: float) -> dict[str, Doubles]:
     """Return the turns of a tail that sways, the more the farther from the body."""
     names = [name for name in rig.names if name.startswith("tail")]
+    level = pelvis
+    if sits:
+        # Behind the rump on the floor, however it is carried.
+        way = rig.head(names[3]) - rig.head(names[0])
+        rises = np.degrees(np.arctan2(way[2], -way[0]))
+        now = np.degrees(np.arctan2(-pelvis[2, 0], pelvis[0, 0]))
+        level = pelvis @ turn_about("y", sits * float(_TAIL_DEG - rises - now))
     turns = {}
     for number, name in enumerate(names):
         swing = np.sin(2.0 * np.pi * (0.45 * time_s + 0.29 * seed) - 0.55 * number)
         angle = 13.0 * (number + 1) / len(names) * float(swing)
-        turns[name] = pelvis @ turn_about("z", angle) @ turn_about("x", angle)
+        turns[name] = level @ turn_about("z", angle) @ turn_about("x", angle)
     return turns

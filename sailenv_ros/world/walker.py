@@ -20,6 +20,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Held, Instant, SpotActivity
 from sailenv_ros.world.activities.handling import ways_to_put, ways_to_take
+from sailenv_ros.world.activities.haunches import FLOOR, Haunches, steps_up
 from sailenv_ros.world.activities.lying import lanes_for, ways_to_lie
 from sailenv_ros.world.activities.opening import ways_to_open
 from sailenv_ros.world.activities.playing import Playing
@@ -134,6 +135,8 @@ class Walker(Stepper):
 
     def sit_on(self, name: str) -> bool:
         """Begin to walk to a seat and sit down; False if it cannot."""
+        if self._on_four:
+            return name == FLOOR and self._sit_down()
         return self.crowd is not None and self._go_and(ways_to_sit(self._actor, self.crowd, name))
 
     def lie_on(self, name: str) -> bool:
@@ -182,6 +185,8 @@ class Walker(Stepper):
         """Return the names of seats that nobody has taken."""
         if self.crowd is None:
             return ()
+        if self._on_four:
+            return (FLOOR,)
         return tuple(dict.fromkeys(seat.name for seat in seats_for(self._actor, self.crowd)))
 
     def beds(self) -> tuple[str, ...]:
@@ -204,6 +209,18 @@ class Walker(Stepper):
     def _begins(self, place: Place, yaw: float | None) -> bool:
         """Begin to walk to a place; False if no way leads there, or something is being done."""
         return self._does is None and self._go(place, yaw)
+
+    @property
+    def _on_four(self) -> bool:
+        return self._actor.rig.legs == 4
+
+    def _sit_down(self) -> bool:
+        """Begin to sit down on the floor; False if something is being done."""
+        if self._does is not None or self._way is not None:
+            return False
+        self._way, self._way_s, self._goal = steps_up(self._actor, self._feet), 0.0, None
+        self._does = Haunches(self._actor, self._place)
+        return True
 
     def _stopped(self) -> None:
         self.leave()

@@ -136,6 +136,37 @@ def test_legs_of_one_that_stands_are_the_same_bytes(cat: Asset) -> None:
     world.close()
 
 
+@pytest.mark.parametrize("name", ["cat_02", "dog_01"])
+def test_one_sits_down_on_the_floor_and_gets_up(name: str) -> None:
+    asset = AssetLibrary(installed_sources()).get(name)
+    world = world_of(placed("tom", asset, 0.0, 0.0), placed("far", box("b", (0.3, 0.3, 0.5)), 3, 3))
+    tom = one(world, "tom")
+    world.step(1)
+    assert tom.walker.seats() == ("floor",)
+    assert not tom.walker.sit_on("far")
+    before = paws_of(tom)
+    assert tom.walker.sit_on("floor")
+    seen = []
+    for _ in range(60):
+        world.step(12)
+        seen.append(tom.walker.activity)
+    assert list(dict.fromkeys(seen)) == ["walking", "sitting down", "seated"]
+    paws = paws_of(tom)
+    assert np.abs(paws[:2] - before[:2]).max() < 1e-9  # it stands on those in front
+    assert np.abs(paws[:, 2] - before[:, 2]).max() < 1e-9
+    skeleton = tom.skeleton()
+    root, chest = (skeleton.joints[skeleton.joint_names.index(n)] for n in ("root", "spine03"))
+    assert root[2] < 0.5 * chest[2]
+    low = min(float(mesh.positions[:, 2].min()) for mesh in tom.deformation().meshes)
+    assert abs(low) < 0.006  # upon the floor
+    tom.walker.get_up()
+    for _ in range(30):
+        world.step(12)
+    assert tom.walker.activity == "standing"
+    assert tom.walker.walk_to((1.0, 0.5))
+    world.close()
+
+
 def test_behaviours_that_need_hands_are_refused(cat: Asset) -> None:
     world = world_of(placed("tom", cat, 0.0, 0.0))
     tom = world.body(world.find("tom"))
