@@ -116,17 +116,16 @@ def anatomy_of(look: AnimalLook) -> Anatomy:
     kind, unit = _KINDS[look.kind], look.height
     joints: dict[str, tuple[str, Doubles]] = {}
 
-    def add(name: str, parent: str, place: Doubles) -> Doubles:
+    def add(name: str, parent: str, place: Doubles) -> str:
         joints[name] = (parent, unit * place)
-        return place
+        return name
 
     def longer(place: Place) -> Doubles:
         return np.array([look.length * place[0], place[1], place[2]])
 
     parent = ""
     for name, place in zip(_TRUNK, kind.trunk, strict=True):
-        add(name, parent, longer(place))
-        parent = name
+        parent = add(name, parent, longer(place))
     front = longer(kind.trunk[3]) - np.array(kind.trunk[3])
     base = np.array(kind.neck[0])
     add("neck01", "spine03", base + front)
@@ -144,7 +143,7 @@ def anatomy_of(look: AnimalLook) -> Anatomy:
     back = longer(kind.trunk[0]) - np.array(kind.trunk[0])
     parent, at = "root", np.array(kind.tail) + back
     for number in range(TAIL_JOINTS):
-        parent = _added(add, f"tail{number + 1:02d}", parent, at)
+        parent = add(f"tail{number + 1:02d}", parent, at)
         # It leaves the back with the back's slope, rises, and curls towards its tip.
         share = number / (TAIL_JOINTS - 1)
         angle = look.tail_up * min(1.0, 0.25 + 3.0 * share) + look.tail_curl * max(share - 0.3, 0.0)
@@ -155,18 +154,13 @@ def anatomy_of(look: AnimalLook) -> Anatomy:
         parent = "spine03"
         for name, place in zip(_FORE, kind.fore, strict=True):
             at = np.array(place) * [1.0, sign, 1.0] + front
-            parent = _added(add, f"{name}.{side}", parent, at)
+            parent = add(f"{name}.{side}", parent, at)
         parent = "root"
         for name, place in zip(_HIND, kind.hind, strict=True):
             at = np.array(place) * [1.0, sign, 1.0] + back
-            parent = _added(add, f"{name}.{side}", parent, at)
+            parent = add(f"{name}.{side}", parent, at)
     return Anatomy(look=look, joints=joints, head_m=size * unit)
 
 
 _EARS = {"cat": (0.40, 0.27, 0.42), "dog": (0.25, 0.19, 0.235)}
 """Where ears begin, from the head's joint, over the head's length."""
-
-
-def _added(add, name: str, parent: str, place: Doubles) -> str:  # type: ignore[no-untyped-def]
-    add(name, parent, place)
-    return name

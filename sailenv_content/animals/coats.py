@@ -103,9 +103,8 @@ class CoatPainter:
             return self._saddle(own, is_head, marks)
         if pattern == "patches":
             return self._patches(own, head, is_head)
-        x, _, z = own.T
-        dark = 0.35 * _step(-z, -0.92, 0.12) * (1.0 - marks[:, 1])
-        return np.asarray(dark * (1.0 - is_head) + 0.0 * x, np.float64)
+        back = _step(-own[:, 2], -0.92, 0.12) * (1.0 - marks[:, 1])
+        return np.asarray(0.35 * back * (1.0 - is_head), np.float64)
 
     def _tabby(self, own: Doubles, head: Doubles, is_head: Doubles, marks: Doubles) -> Doubles:
         x, y, z = own.T

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-from hashlib import blake2b
-from pathlib import Path
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,6 +27,8 @@ Texture = NDArray[np.uint8]
 BODY_PX, HEAD_PX, EAR_PX, EYE_PX = 768, 448, 64, 64
 
 _PARTS = ("body", "head", "ear.L", "ear.R", "eye.L", "eye.R")
+_CODE = ("../sailenv_content/animals", "native", "types")
+
 _LOW = 0.30
 """Height over that of the withers below which what faces up or down is a paw."""
 
@@ -46,7 +44,10 @@ def make_animal(name: str, look: AnimalLook) -> Asset:
     """
     anatomy = anatomy_of(look)
     arrays = cached_arrays(
-        "animal", (look.model_dump_json(),), lambda: animal_arrays(anatomy), code=_code()
+        "animal",
+        (look.model_dump_json(),),
+        lambda: animal_arrays(anatomy),
+        code=code_digest(*_CODE, libraries=("scipy",)),
     )
     names = tuple(anatomy.joints)
     place = {joint: number for number, joint in enumerate(names)}
@@ -72,15 +73,6 @@ def make_animal(name: str, look: AnimalLook) -> Asset:
             legs=4,
         ),
     )
-
-
-@lru_cache(maxsize=1)
-def _code() -> str:
-    """Return what changes with the code that makes animals."""
-    digest = blake2b(digest_size=16)
-    for file in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(file.read_bytes())
-    return digest.hexdigest() + code_digest("types", libraries=("scipy",))
 
 
 def animal_arrays(anatomy: Anatomy) -> Arrays:

@@ -139,10 +139,21 @@ def test_frames_have_labels_and_joints_but_no_keypoints_of_people(frames: list[F
         assert (frame["category"][seen] == categories.named(kind).id).all()
         assert _keypoints(frame, one) == {}
     joints = frame.joints(rex)
-    number = joints.names.index("head")
+    number = joints.names.index("forepaw.L")
     assert joints.visible[number]
     u, v = np.rint(joints.pixels[number]).astype(int)
     assert frame["instance"][v, u] == rex
+    # What is deeper in its body than flesh of its size is hidden by itself.
+    camera = frame.camera.camera_from_world
+    depths = joints.world @ camera[2, :3] + camera[2, 3]
+    columns, rows = np.rint(joints.pixels).astype(int).T
+    below = depths - frame["depth"][rows, columns]
+    inside = frame["instance"][rows, columns] == rex
+    assert (
+        joints.visible[inside] == (below[inside] < 0.125 * np.ptp(joints.world, axis=0).max())
+    ).all()
+    assert joints.visible[inside].any()
+    assert (joints.hidden_by[inside & ~joints.visible] == rex).all()
     paws = [n for n, name in enumerate(joints.names) if "paw" in name]
     assert len(paws) == 4
     assert joints.world[paws, 2] == pytest.approx(joints.world[paws[0], 2], abs=0.003)
