@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sailenv_content.animals.anatomy import Anatomy
 from sailenv_content.animals.shape import EYE
+from sailenv_content.people.pieces import vertex_normals
 from sailenv_ros.types.geometry import Pose
 
 __all__ = ["Piece", "ear", "eye"]
@@ -68,11 +69,8 @@ def ear(anatomy: Anatomy, side: str) -> Piece:
     if float(np.einsum("tk,tk->", corners[:, 0], areas)) < float(
         np.einsum("k,tk->", vertices.mean(axis=0), areas)
     ):
-        triangles, areas = triangles[:, ::-1], -areas
-    normals = np.zeros_like(vertices)
-    for k in range(3):
-        np.add.at(normals, triangles[:, k], areas)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+        triangles = triangles[:, ::-1]
+    normals = vertex_normals(vertices, triangles)
     return Piece(f"ear.{side}", vertices, normals, uvs, triangles)
 
 
