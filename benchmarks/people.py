@@ -3,6 +3,7 @@
     python benchmarks/people.py skin                 # flow and tracks against vertices
     python benchmarks/people.py clothes              # skin through clothes, of all people
     python benchmarks/people.py walks --rooms 200 --walks 5
+    python benchmarks/people.py walks --animals      # cats and dogs instead
     python benchmarks/people.py cost
     python benchmarks/people.py coco                 # pycocotools: truth against itself
 
@@ -23,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from sailenv_content.animals.looks import animals
 from sailenv_content.people.fetch_bodies import fetch_bodies
 from sailenv_content.people.looks import people
 from sailenv_ros import AgentSpec, CameraIntrinsics, Simulation
@@ -207,7 +209,7 @@ def clothes() -> None:
         assert rig is not None
         figure = figure_of(rig)
         stride = figure.stride
-        feet = standing_feet(0.0, 0.0, 0.0, stride.width_m)
+        feet = standing_feet(0.0, 0.0, 0.0, stride)
         way = way_along(feet, [(0.0, 0.0), (3.0, 0.0)], stride)
         worn = {
             place
@@ -254,7 +256,7 @@ def beyond(
     return np.asarray(np.einsum("ij,ij->i", off, facing[near[some]]).clip(0.0, None))
 
 
-def walks(rooms: int, count: int) -> None:
+def walks(rooms: int, count: int, names: tuple[str, ...]) -> None:
     """Tell of walks through generated rooms: arrivals, and how far limbs go into things."""
     library = SceneLibrary()
     kinds = ("living_room", "bedroom", "kitchen", "office")
@@ -267,7 +269,7 @@ def walks(rooms: int, count: int) -> None:
         with tempfile.TemporaryDirectory() as folder:
             world = library.build(scene_file(Path(folder), text))
             try:
-                found = walks_in(world, number, count)
+                found = walks_in(world, number, count, names[number % len(names)])
             finally:
                 world.close()
         for ok, problem, depth, low, slide in found:
@@ -289,15 +291,14 @@ def walks(rooms: int, count: int) -> None:
 STOCK = AssetLibrary(installed_sources())
 
 
-def walks_in(world: World, seed: int, count: int) -> Any:
+def walks_in(world: World, seed: int, count: int, name: str) -> Any:
     """Yield (arrived, problem, depth, lowest sole, slide) of walks in one room."""
     from sailenv_ros.types.geometry import Pose
     from sailenv_ros.world.placement import Placement
 
     rng = np.random.default_rng(seed)
-    names = list(people())
-    asset = STOCK.get(names[seed % len(names)])
-    category = world.contents.categories.named("person").id
+    asset = STOCK.get(name)
+    category = world.contents.categories.named(asset.category).id
     id_ = world.spawn(Placement(name="walker", asset=asset, category_id=category, pose=Pose()))
     person = world.body(id_)
     assert isinstance(person, PersonBody)
@@ -325,14 +326,13 @@ def walks_in(world: World, seed: int, count: int) -> Any:
                             if abs(point[7][2]) < 0.7:
                                 depth = max(depth, -point[8])
             mesh = person.deformation().meshes
-            soles = min(float(m.positions[:, 2].min()) for m in mesh[-2:])
+            soles = min(float(m.positions[:, 2].min()) for m in mesh)
             low = min(low, soles)
             moment = walker._moment()
             feet = np.array([[f.x, f.y] for f in moment.feet])
-            if last is not None and moment.swinging >= 0:
-                stance = 1 - moment.swinging
-                if last[1] == moment.swinging:
-                    slide = max(slide, float(np.linalg.norm(feet[stance] - last[0][stance])))
+            if last is not None and last[1] == moment.swinging >= 0:
+                moved = np.linalg.norm(feet - last[0], axis=1)
+                slide = max(slide, float(np.delete(moved, moment.swinging).max()))
             last = (feet, moment.swinging)
             if walker.activity == "standing":
                 break
@@ -425,10 +425,11 @@ def main() -> None:
     parser.add_argument("--rooms", type=int, default=200)
     parser.add_argument("--walks", type=int, default=5)
     parser.add_argument("--frames", type=int, default=200)
+    parser.add_argument("--animals", action="store_true", help="cats and dogs walk, not people")
     given = parser.parse_args()
     fetch_bodies()
     if given.what == "walks":
-        walks(given.rooms, given.walks)
+        walks(given.rooms, given.walks, tuple(animals() if given.animals else people()))
     elif given.what == "skin":
         skin_motion(given.frames)
     else:

@@ -20,6 +20,7 @@ __all__ = ["BUILD_COMMAND", "UnbuiltPack", "installed_packs", "installed_sources
 OPEN_SOURCES = (
     "sailenv_content.families.source:FamilySource",
     "sailenv_content.people.source:PeopleSource",
+    "sailenv_content.animals.source:AnimalSource",
 )
 """Sources that make what a name describes, as ``module:name``: content knows this package."""
 

@@ -73,9 +73,9 @@ class BehaviourParameters(BaseModel):
         return False
 
     @property
-    def needs_person(self) -> bool:
-        """True if it moves nothing but people."""
-        return False
+    def legs(self) -> tuple[int, ...]:
+        """Numbers of legs of those that it moves alone; empty if it moves other things."""
+        return ()
 
     @property
     def viewer(self) -> str:

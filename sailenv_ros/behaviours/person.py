@@ -129,9 +129,9 @@ class PersonParameters(BehaviourParameters):
     )
 
     @property
-    def needs_person(self) -> bool:
-        """True: nothing else can do it."""
-        return True
+    def legs(self) -> tuple[int, ...]:
+        """Numbers of legs of those who can do it: people alone, unless it says so."""
+        return (2,)
 
 
 PersonFunction: TypeAlias = Callable[

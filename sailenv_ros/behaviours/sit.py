@@ -1,4 +1,4 @@
-"""A person who sits down, gets up, and sits down elsewhere."""
+"""A person who sits down, gets up, and sits down elsewhere; an animal that sits on the floor."""
 
 from __future__ import annotations
 
@@ -24,6 +24,11 @@ class Sit(PersonParameters):
     sitting: tuple[Seconds, Seconds] = Field(
         default=(8.0, 30.0), description="shortest and longest time on a seat [s]"
     )
+
+    @property
+    def legs(self) -> tuple[int, ...]:
+        """People and animals."""
+        return 2, 4
 
 
 @resting_behaviour("sit", Sit)

@@ -1,4 +1,4 @@
-"""A person who goes to things and looks at them."""
+"""A person or an animal that goes to things and looks at them."""
 
 from __future__ import annotations
 
@@ -18,6 +18,11 @@ class Visit(PersonParameters):
     objects: tuple[str, ...] = Field(
         default=(), max_length=64, description="names of what is visited in turn; none: at random"
     )
+
+    @property
+    def legs(self) -> tuple[int, ...]:
+        """People and animals."""
+        return 2, 4
 
 
 @person_behaviour("visit", Visit)

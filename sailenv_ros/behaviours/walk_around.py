@@ -1,4 +1,4 @@
-"""A person who walks from place to place."""
+"""A person or an animal that walks from place to place."""
 
 from __future__ import annotations
 
@@ -13,6 +13,11 @@ __all__ = ["WalkAround", "walk_around"]
 
 class WalkAround(PersonParameters):
     """Parameters of `walk_around`."""
+
+    @property
+    def legs(self) -> tuple[int, ...]:
+        """People and animals."""
+        return 2, 4
 
 
 @person_behaviour("walk_around", WalkAround)

@@ -9,6 +9,7 @@ from typing import Any
 
 from rich.console import Console
 
+from sailenv_content.animals.looks import OWN_LICENCE, animals
 from sailenv_content.people.fetch_bodies import (
     BODIES_COMMAND,
     LICENCE,
@@ -141,6 +142,9 @@ def _list(args: argparse.Namespace) -> int:
         print(f"{body_folder()}  {SOURCE}")
         for name, look in people().items():
             print(f"  {name:<20} {'person':<16} {look.title:<21} {LICENCE}")
+    print("cats and dogs, which rules make  (sailenv_ros)")
+    for name, animal in animals().items():
+        print(f"  {name:<20} {animal.kind:<16} {animal.title:<21} {OWN_LICENCE}")
     if args.sheet is not None:
         args.output = args.sheet
         return _sheet(args)

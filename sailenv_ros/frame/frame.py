@@ -95,12 +95,12 @@ class Frame(FrameData):
         return keypoints_of(self, self.objects, instance_id)
 
     def joints(self, instance_id: int) -> Keypoints:
-        """Return all joints of a person, as `keypoints` returns its keypoints.
+        """Return all joints of a person or an animal, as `keypoints` returns keypoints.
 
         Raises
         ------
         InvalidRequest
-            If there is no person of that id.
+            If there is nobody of that id.
         """
         own = skeleton_of(self, instance_id)
         return person_points(self, instance_id, own.joint_names, own.joints)

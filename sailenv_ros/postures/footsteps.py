@@ -1,12 +1,13 @@
 """Ways of feet: prints on the floor, one after another, and what a body does between them.
 
-A way is a list of prints of alternating feet. Between two prints one foot swings while the other
-stands; a foot that stands keeps its print exactly, so feet do not slide.
+A way is a list of prints of feet in turn. Between two prints one foot swings while the others
+stand; a foot that stands keeps its print exactly, so feet do not slide. Of two feet 0 is the left
+one and 1 the right one; of four these are in front, and 2 and 3 are behind them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -31,10 +32,11 @@ Doubles = NDArray[np.float64]
 
 _LEAST_WAY_M = 0.12
 
-MOST_TURN_RAD = 0.9
-"""Of one step on the spot [rad]."""
+MOST_TURN_RAD = (0.9, 0.4)
+"""Of one step on the spot, by two feet and by four [rad]."""
 
-_SIDES = ("L", "R")
+_FOUR = (2, 0, 3, 1)
+"""Order in which four feet step: each in front after the one behind it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,21 +54,42 @@ class FootPrint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stride:
-    """Measures of a person's steps.
+    """Measures of steps.
 
     Attributes
     ----------
     length_m : float
-        From a foot's print to the other's.
+        From a foot's print to the next one's.
     width_m : float
         Between the feet, across.
     step_s : float
         Time of a step.
+    base_m : float
+        From the feet behind to those in front; 0 for two feet.
     """
 
     length_m: float
     width_m: float
     step_s: float
+    base_m: float = 0.0
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Feet in the order in which they step."""
+        return _FOUR if self.base_m else (0, 1)
+
+    def scaled(self, factor: float) -> Stride:
+        """Return it in lengths that are so many times as large."""
+        lengths = (part * factor for part in (self.length_m, self.width_m, self.base_m))
+        length, width, base = lengths
+        return replace(self, length_m=length, width_m=width, base_m=base)
+
+    def foot(self, x: float, y: float, yaw: float, number: int) -> FootPrint:
+        """Return the print of a foot that is in its place below a body."""
+        across = 0.5 * self.width_m * (1.0 if number % 2 == 0 else -1.0)
+        ahead = 0.5 * self.base_m * (1.0 if number < 2 else -1.0)
+        c, s = float(np.cos(yaw)), float(np.sin(yaw))
+        return FootPrint(x + ahead * c - across * s, y + ahead * s + across * c, yaw)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,20 +99,22 @@ class Moment:
     Attributes
     ----------
     feet : tuple of FootPrint
-        Left and right: where they stand, or stood before they swing.
+        Where they stand, or stood before they swing.
     goal : FootPrint or None
         Where the swinging foot will stand.
     swinging : int
-        0 left, 1 right; -1 where both stand.
+        Number of the swinging foot; -1 where all stand.
     share : float
         Of the step that is done, 0 to 1.
     x, y, yaw : float
         Of the body, on the floor.
     ahead_m, before_m : float
         Length of the step, and of the one before.
+    arm_swing : float
+        Share of the swing of arms that there is room for; the less, the closer they are held.
     """
 
-    feet: tuple[FootPrint, FootPrint]
+    feet: tuple[FootPrint, ...]
     goal: FootPrint | None
     swinging: int
     share: float
@@ -98,15 +123,15 @@ class Moment:
     yaw: float
     ahead_m: float
     before_m: float = 0.0
+    arm_swing: float = 1.0
 
     def scaled(self, factor: float) -> Moment:
         """Return it in lengths that are so many times as large."""
         if factor == 1.0:
             return self
-        left, right = (place.scaled(factor) for place in self.feet)
         return replace(
             self,
-            feet=(left, right),
+            feet=tuple(place.scaled(factor) for place in self.feet),
             goal=None if self.goal is None else self.goal.scaled(factor),
             x=self.x * factor,
             y=self.y * factor,
@@ -122,13 +147,13 @@ class Way:
     Attributes
     ----------
     start : tuple of FootPrint
-        Left and right.
+        Of all feet.
     prints : tuple of (int, FootPrint)
         Which foot, and where it is put.
     step_s : float
     """
 
-    start: tuple[FootPrint, FootPrint]
+    start: tuple[FootPrint, ...]
     prints: tuple[tuple[int, FootPrint], ...]
     step_s: float
 
@@ -137,17 +162,21 @@ class Way:
         """Time to go it [s]."""
         return len(self.prints) * self.step_s
 
-    def feet_after(self, count: int) -> tuple[FootPrint, FootPrint]:
+    @property
+    def steps_of_pace(self) -> int:
+        """Number of steps after which the other side has its turn."""
+        return len(self.start) // 2
+
+    def feet_after(self, count: int) -> tuple[FootPrint, ...]:
         """Return where the feet stand after so many steps."""
         return self._feet[min(count, len(self.prints))]
 
     @cached_property
-    def _feet(self) -> tuple[tuple[FootPrint, FootPrint], ...]:
+    def _feet(self) -> tuple[tuple[FootPrint, ...], ...]:
         """Where the feet stand after each number of steps."""
         found = [self.start]
         for side, place in self.prints:
-            left, right = found[-1]
-            found.append((place, right) if side == 0 else (left, place))
+            found.append(_stepped(found[-1], side, place))
         return tuple(found)
 
     def at(self, time_s: float) -> Moment:
@@ -161,8 +190,7 @@ class Way:
         share = min(max(time_s / self.step_s - number, 0.0), 1.0)
         feet = self.feet_after(number)
         side, goal = self.prints[number]
-        then = (goal, feet[1]) if side == 0 else (feet[0], goal)
-        now, later = _middle(feet), _middle(then)
+        now, later = _middle(feet), _middle(_stepped(feet, side, goal))
         eased = share
         if number == 0:
             eased = share * share * (2.0 - share)  # from rest
@@ -193,27 +221,27 @@ class Way:
         return replace(self, prints=self.prints + other.prints)
 
 
-def moment_of(feet: tuple[FootPrint, FootPrint]) -> Moment:
+def moment_of(feet: tuple[FootPrint, ...]) -> Moment:
     """Return a body whose feet stand."""
     x, y, yaw = _middle(feet)
     return Moment(feet=feet, goal=None, swinging=-1, share=0.0, x=x, y=y, yaw=yaw, ahead_m=0.0)
 
 
-def way_to_turn(feet: tuple[FootPrint, FootPrint], yaw: float, stride: Stride) -> Way:
+def way_to_turn(feet: tuple[FootPrint, ...], yaw: float, stride: Stride) -> Way:
     """Return steps on the spot until the body points a way [rad]."""
     x, y, now = _middle(feet)
     turn = _turn(now, yaw)
-    count = max(1, int(np.ceil(abs(turn) / MOST_TURN_RAD)))
-    first = 0 if turn > 0.0 else 1  # the foot on the side to which the body turns
+    count = max(1, int(np.ceil(abs(turn) / MOST_TURN_RAD[bool(stride.base_m)])))
+    # First a foot on the side to which the body turns.
+    order = [foot if turn > 0.0 else foot ^ 1 for foot in stride.order]
     prints: list[tuple[int, FootPrint]] = []
     for number in range(1, count + 1):
         heading = now + turn * number / count
-        for side in (first, 1 - first):
-            prints.append((side, _beside(x, y, heading, side, stride.width_m)))
+        prints += ((foot, stride.foot(x, y, heading, foot)) for foot in order)
     return Way(start=feet, prints=tuple(prints), step_s=0.8 * stride.step_s)
 
 
-def way_along(feet: tuple[FootPrint, FootPrint], corners: ArrayLike, stride: Stride) -> Way:
+def way_along(feet: tuple[FootPrint, ...], corners: ArrayLike, stride: Stride) -> Way:
     """Return steps along a line from where the feet stand, with feet side by side at its end.
 
     Parameters
@@ -226,18 +254,17 @@ def way_along(feet: tuple[FootPrint, FootPrint], corners: ArrayLike, stride: Str
     count = max(1, int(np.ceil(length / stride.length_m)))
     step = length / count
     prints = []
-    side = 0
-    for number in range(1, count + 1):
-        x, y = line.at(number * step)
-        prints.append((side, _beside(x, y, line.heading(number * step), side, stride.width_m)))
-        side = 1 - side
-    x, y = line.at(length)
-    prints.append((side, _beside(x, y, line.heading(length), side, stride.width_m)))
+    order = stride.order
+    # At the end the other feet come to stand beside the last one.
+    for number in range(1, count + len(order)):
+        foot, way_m = order[(number - 1) % len(order)], number * step if number <= count else length
+        x, y = line.at(way_m)
+        prints.append((foot, stride.foot(x, y, line.heading(way_m), foot)))
     return Way(start=feet, prints=tuple(prints), step_s=stride.step_s)
 
 
 def way_to_stand(
-    feet: tuple[FootPrint, FootPrint], line: Doubles, yaw: float | None, stride: Stride
+    feet: tuple[FootPrint, ...], line: Doubles, yaw: float | None, stride: Stride
 ) -> Way:
     """Return steps along a line: turns to it first where that is needed, and at its end.
 
@@ -288,25 +315,27 @@ class _Line:
         return float(np.arctan2(after[1] - before[1], after[0] - before[0]))
 
 
-def standing_feet(x: float, y: float, yaw: float, width_m: float) -> tuple[FootPrint, FootPrint]:
+def standing_feet(x: float, y: float, yaw: float, stride: Stride) -> tuple[FootPrint, ...]:
     """Return feet side by side."""
-    left, right = (_beside(x, y, yaw, side, width_m) for side in (0, 1))
-    return left, right
+    return tuple(stride.foot(x, y, yaw, number) for number in range(len(stride.order)))
 
 
 def _distance(one: FootPrint, other: FootPrint) -> float:
     return float(np.hypot(other.x - one.x, other.y - one.y))
 
 
-def _beside(x: float, y: float, yaw: float, side: int, width_m: float) -> FootPrint:
-    across = 0.5 * width_m * (1.0 if side == 0 else -1.0)
-    return FootPrint(x - across * float(np.sin(yaw)), y + across * float(np.cos(yaw)), yaw)
+def _stepped(feet: tuple[FootPrint, ...], number: int, place: FootPrint) -> tuple[FootPrint, ...]:
+    """Return feet of which one has stepped to a place."""
+    return (*feet[:number], place, *feet[number + 1 :])
 
 
 def _middle(feet: Sequence[FootPrint]) -> tuple[float, float, float]:
-    left, right = feet
-    yaw = left.yaw + 0.5 * _turn(left.yaw, right.yaw)
-    return 0.5 * (left.x + right.x), 0.5 * (left.y + right.y), yaw
+    def mean(parts: Iterable[float]) -> float:
+        return sum(parts) / len(feet)
+
+    first = feet[0].yaw
+    yaw = first + mean(_turn(first, foot.yaw) for foot in feet)
+    return mean(foot.x for foot in feet), mean(foot.y for foot in feet), yaw
 
 
 def _turn(start: float, end: float) -> float:

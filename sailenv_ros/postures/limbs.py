@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.postures.skeleton import aligned
 from sailenv_ros.types.rig import Rig
 
-__all__ = ["bend_arm", "bend_leg", "leg_length_m", "two_bones"]
+__all__ = ["bend_arm", "bend_bones", "bend_leg", "leg_length_m", "two_bones"]
 
 Doubles = NDArray[np.float64]
 
@@ -51,6 +53,25 @@ def leg_length_m(rig: Rig) -> float:
     return float(np.linalg.norm(knee - hip) + np.linalg.norm(ankle - knee))
 
 
+def bend_bones(
+    rest: Sequence[Doubles], bent: Sequence[Doubles], rest_pole: Doubles, pole: Doubles
+) -> tuple[Doubles, Doubles]:
+    """Return the turns of two bones.
+
+    Parameters
+    ----------
+    rest, bent : sequence of three (3,) float64
+        Where they begin, meet and end [m].
+    rest_pole, pole : (3,) float64
+        Where the joint between them points.
+    """
+    (begin, middle, end), (top, joint, tip) = rest, bent
+    return (
+        aligned(middle - begin, rest_pole, joint - top, pole),
+        aligned(end - middle, rest_pole, tip - joint, pole),
+    )
+
+
 def bend_leg(
     rig: Rig, side: str, hip: Doubles, ankle: Doubles, foot: Doubles, pole: Doubles
 ) -> dict[str, Doubles]:
@@ -71,11 +92,8 @@ def bend_leg(
     knee, end = two_bones(
         hip, ankle, float(np.linalg.norm(upper)), float(np.linalg.norm(lower)), pole
     )
-    return {
-        f"upperleg01.{side}": aligned(upper, _FORWARD, knee - hip, pole),
-        f"lowerleg01.{side}": aligned(lower, _FORWARD, end - knee, pole),
-        f"foot.{side}": foot,
-    }
+    thigh, shank = bend_bones(rest, (hip, knee, end), _FORWARD, pole)
+    return {f"upperleg01.{side}": thigh, f"lowerleg01.{side}": shank, f"foot.{side}": foot}
 
 
 def bend_arm(

@@ -43,7 +43,6 @@ def walking_posture(
     *,
     seed: int = 0,
     look_deg: tuple[float, float] = (0, 0),
-    swing: float = 1.0,
 ) -> Posture:
     """Return the posture of a body on its way, in the frame of the body there.
 
@@ -58,30 +57,28 @@ def walking_posture(
         Sets people's breaths apart.
     look_deg : (2,) tuple of float
         Where it looks: to the left and down from the chest [deg].
-    swing : float
-        Share of the swing of its arms; the less there is, the closer they are held.
     """
     figure = figure_of(rig)
     stands = moment.swinging < 0
     own = [own_print(moment, place) for place in moment.feet]
-    moving = moment.swinging
+    swing = moment.swinging
     vigour = 0.0 if stands else min(moment.ahead_m / (1.5 * figure.leg_m), 1.0)
     feet = [_standing_foot(figure, place, 0.0, 0.0) for place in own]
     if not stands:
         assert moment.goal is not None
         goal = own_print(moment, moment.goal)
-        stance = 1 - moving
+        stance = 1 - swing
         early = max(0.0, 1.0 - (moment.share + 1.0 - _LANDS) / 0.2)
         length = min(moment.before_m / (1.5 * figure.leg_m), 1.0)
         feet[stance] = _standing_foot(figure, own[stance], _HEEL_STRIKE_DEG * early * length, 0.0)
-        feet[moving] = _swinging_foot(figure, own[moving], goal, moment.share, vigour)
+        feet[swing] = _swinging_foot(figure, own[swing], goal, moment.share, vigour)
     ankles = [ankle for ankle, _ in feet]
     # The hips: over the feet, as high as the legs reach.
     middle = 0.5 * (own[0].y + own[1].y)
     sway = 0.0
     if not stands:
-        sway = 0.022 * figure.leg_m * float(np.sin(np.pi * moment.share)) * (1 if moving else -1)
-    support = ankles[1 - moving] if not stands else 0.5 * (ankles[0] + ankles[1])
+        sway = 0.022 * figure.leg_m * float(np.sin(np.pi * moment.share)) * (1 if swing else -1)
+    support = ankles[1 - swing] if not stands else 0.5 * (ankles[0] + ankles[1])
     away = 0.72 * abs(float(support[0]))
     reach = _STRAIGHT * figure.leg_m
     high = figure.ankle_m + float(np.sqrt(max(reach**2 - away**2, (0.6 * reach) ** 2)))
@@ -101,9 +98,9 @@ def walking_posture(
     chest = turn_about("z", twist) @ turn_about("y", 2.5 * vigour + 0.25 * breath)
     turns["spine03"] = turn_about("z", -0.3 * twist) @ turn_about("y", 2.0 * vigour)
     turns["spine01"] = chest
-    arm = 46.0 * swing * float(np.clip(ahead, -1.0, 1.0))
+    arm = 46.0 * moment.arm_swing * float(np.clip(ahead, -1.0, 1.0))
     swings_deg = -arm + 0.6 * breath, arm + 0.6 * breath
-    turns |= hanging_arms(rig, chest, swings_deg, spread=0.09 + 0.07 * swing)
+    turns |= hanging_arms(rig, chest, swings_deg, spread=0.09 + 0.07 * moment.arm_swing)
     turns |= looking(turn_about("y", 1.0), look_deg[0], look_deg[1])
     turns |= hands_at_ease(rig, turns)
     return Posture(root_m=root, turns=turns)

@@ -11,7 +11,7 @@ from sailenv_ros.streams.plan import Place
 from sailenv_ros.streams.replacing import replace_pieces
 from sailenv_ros.streams.state import Colour, StreamState, tinted
 from sailenv_ros.types.geometry import Pose, look_at
-from sailenv_ros.types.labels import ROOM_PARTS, Instance
+from sailenv_ros.types.labels import LIVING, ROOM_PARTS, Instance
 from sailenv_ros.types.lights import Light
 
 __all__ = ["Stage"]
@@ -91,7 +91,7 @@ class Stage:
         for name in self._dice.mixed(sorted(joints))[: self._course.moves.open]:
             period = round(self._dice.between(OPENS_S), 1)
             core.add_behaviour(name, {"type": "open_and_close", "period": period})
-        things = [one for one in present if one.category != "person"]
+        things = [one for one in present if one.category not in LIVING]
         loose = sorted(one.name for one in things if not one.static and one.name not in joints)
         for name in self._dice.mixed(loose)[: self._course.moves.pushed]:
             interval = round(self._dice.between(PUSHED_S), 1)

@@ -52,7 +52,7 @@ class InstanceStates(RebuiltByFields):
     deformations : mapping of int to Deformation
         Vertices of the instances that deform, by their ids. Messages and files leave them out.
     skeletons : mapping of int to Skeleton
-        Of people, by their ids.
+        Of people and animals, by their ids.
 
     Raises
     ------

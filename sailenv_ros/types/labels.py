@@ -21,6 +21,7 @@ __all__ = [
     "MAX_CATEGORY_ID",
     "MAX_INSTANCE_ID",
     "PART_MARK",
+    "LIVING",
     "ROOM_PARTS",
     "UNLABELLED_CATEGORY",
     "Category",
@@ -52,6 +53,9 @@ ROOM_PARTS = frozenset(
     {"wall", "floor", "ceiling", "skirting", "window", "door", "curtain", "outside"}
 )
 """Names of the categories of parts of rooms: what else there is stands in one."""
+
+LIVING = frozenset({"person", "cat", "dog"})
+"""Names of the categories of those who move by themselves."""
 
 Vector3 = tuple[float, float, float]
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,8 @@ class Rig:
         Of these joints; sums are 1.
     points : tuple of RigPoint
         Keypoints.
+    legs : {2, 4}
+        Number of legs that it walks on: 2 as people do, 4 as animals do.
 
     Raises
     ------
@@ -65,6 +68,7 @@ class Rig:
     bones: tuple[NDArray[np.uint16], ...]
     weights: tuple[NDArray[np.float32], ...]
     points: tuple[RigPoint, ...] = ()
+    legs: Literal[2, 4] = 2
 
     def __post_init__(self) -> None:
         count = len(self.names)

@@ -1,4 +1,4 @@
-"""A person's joints and keypoints at one instant, in the world."""
+"""Joints and keypoints of a person or an animal at one instant, in the world."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Skeleton:
     world_from_joint : (J, 3, 4) float64
         Pose of each joint, whose axes at rest are those of the body frame [-, m].
     point_names : (P,) tuple of str
-        `COCO_KEYPOINTS`.
+        `COCO_KEYPOINTS` of a person, none of an animal.
     points : (P, 3) float64
         World frame [m].
 

@@ -16,7 +16,7 @@ from sailenv_ros.frame.lens_rays import tells_depth
 from sailenv_ros.frame.truth.object_table import EDGES, ObjectTable
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.skeleton import COCO_SKELETON
+from sailenv_ros.types.skeleton import COCO_KEYPOINTS, COCO_SKELETON
 from sailenv_ros.viewer.encoding import outline
 from sailenv_ros.viewer.messages import Overlay
 from sailenv_ros.viewer.scene_messages import PersonLines, Segment
@@ -163,6 +163,8 @@ def _people(frame: Frame) -> list[PersonLines]:
     found: list[PersonLines] = []
     for id_ in frame.states.skeletons if frame.states is not None else ():
         points = frame.keypoints(id_)
+        if points.names != COCO_KEYPOINTS:
+            continue  # of an animal
         first, last = (points.world[list(ends)] for ends in zip(*_LIMBS, strict=True))
         lines = [piece for line in seen_segments(frame.camera, first, last) for piece in line]
         places = np.round(points.pixels, 1).tolist()

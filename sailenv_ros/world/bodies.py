@@ -247,10 +247,10 @@ class Body:
         if running.parameters.needs_joint and self.placement.joint is None:
             accepted = f"one on a joint for the behaviour {running.kind.type!r}"
             raise InvalidRequest("object", name, accepted)
-        if running.parameters.needs_person and self.placement.asset.rig is None:
-            raise InvalidRequest(
-                "object", name, f"a person for the behaviour {running.kind.type!r}"
-            )
+        rig, legs = self.placement.asset.rig, running.parameters.legs
+        if legs and (rig is None or rig.legs not in legs):
+            accepted = f"a person for the behaviour {running.kind.type!r}"
+            raise InvalidRequest("object", name, accepted)
         if len(self._behaviours) >= MAX_BEHAVIOURS:
             raise InvalidState(
                 f"object {name!r} has {MAX_BEHAVIOURS} behaviours, which is the most; "

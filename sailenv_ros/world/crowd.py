@@ -37,9 +37,9 @@ _NEAR_M = 0.9
 _APART_M = 0.5
 """Distance of places that two can use [m]."""
 
-_RADIUS, _BESIDE_M = 0.172, 0.02
-"""Of a body, as a share of its height, and what is added to it [m]: between the middles of two free
-cells a way comes so much nearer to furniture."""
+_BESIDE_M = 0.02
+"""Added to the radius of a body: between the middles of two free cells a way comes so much nearer
+to furniture [m]."""
 
 
 class Crowd:
@@ -87,7 +87,7 @@ class Crowd:
     def blocks(self, name: str, radius_m: float, way: Way, number: int) -> bool:
         """Return whether someone stands where a person is after the next steps of its way."""
         here = way.at(number * way.step_s)
-        for ahead in (1, 2):
+        for ahead in (way.steps_of_pace, 2 * way.steps_of_pace):
             there = way.at((number + ahead) * way.step_s)
             for x, y, radius in self.discs(name):
                 now = np.hypot(x - here.x, y - here.y)
@@ -272,11 +272,11 @@ class Crowd:
             self._key, self._maps, self._seats, self._lanes = key, {}, None, None
 
 
-def body_size(height_m: float, floor_m: float) -> BodySize:
-    """Return the cylinder that stands for a person of a height on a floor [m]."""
+def body_size(height_m: float, radius: float, floor_m: float) -> BodySize:
+    """Return the cylinder that stands for a body on a floor: its radius is over its height [m]."""
     return BodySize(
         height_m=max(round(1.06 * height_m, 1), 0.4),
-        radius_m=round(_RADIUS * height_m + _BESIDE_M, 2),
+        radius_m=round(radius * height_m + _BESIDE_M, 2),
         floor_m=round(floor_m, 3),
         step_m=0.05,
     )

@@ -13,28 +13,51 @@ __all__ = ["Limbs"]
 
 Doubles = NDArray[np.float64]
 
-_BONES = (
-    ("root", "spine02", 0.085),
-    ("spine02", "neck01", 0.085),
-    ("head", "head", 0.062),
-    *(
-        (f"{first}.{side}", f"{second}.{side}", share)
-        for side in "LR"
-        for first, second, share in (
-            ("upperarm01", "lowerarm01", 0.026),
-            ("lowerarm01", "wrist", 0.022),
-            ("wrist", "finger3-1", 0.022),
-            ("upperleg01", "lowerleg01", 0.044),
-            ("lowerleg01", "foot", 0.030),
-            ("foot", "toe1-1", 0.022),
-        )
+_BONES = {
+    2: (
+        ("root", "spine02", 0.085),
+        ("spine02", "neck01", 0.085),
+        ("head", "head", 0.062),
+        *(
+            (f"{first}.{side}", f"{second}.{side}", share)
+            for side in "LR"
+            for first, second, share in (
+                ("upperarm01", "lowerarm01", 0.026),
+                ("lowerarm01", "wrist", 0.022),
+                ("wrist", "finger3-1", 0.022),
+                ("upperleg01", "lowerleg01", 0.044),
+                ("lowerleg01", "foot", 0.030),
+                ("foot", "toe1-1", 0.022),
+            )
+        ),
     ),
-)
-"""From a joint to another one, and the radius as a share of the height of the head's joint."""
+    4: (
+        ("root", "spine02", 0.115),
+        ("spine02", "neck01", 0.115),
+        ("neck01", "head", 0.085),
+        ("head", "nose", 0.06),
+        ("tail01", "tail04", 0.03),
+        ("tail04", "tail07", 0.03),
+        *(
+            (f"{first}.{side}", f"{second}.{side}", share)
+            for side in "LR"
+            for first, second, share in (
+                ("upperarm", "forearm", 0.055),
+                ("forearm", "wrist", 0.036),
+                ("wrist", "forepaw", 0.032),
+                ("thigh", "shank", 0.07),
+                ("shank", "hock", 0.042),
+                ("hock", "hindpaw", 0.032),
+            )
+        ),
+    ),
+}
+"""By the number of legs: from a joint to another one, and the radius as a share of the height of
+the head's joint."""
 
 
 class Limbs:
-    """The capsules of one person; moved, and never pushed.
+    """The capsules of one person or animal; moved, and never pushed.
 
     Parameters
     ----------
@@ -45,10 +68,11 @@ class Limbs:
     def __init__(self, client: BulletClient, rig: Rig) -> None:
         self._client = client
         height = float(rig.head("head")[2])
-        self._joints = [(rig.joint_of[a], rig.joint_of[b]) for a, b, _ in _BONES]
+        bones = _BONES[rig.legs]
+        self._joints = [(rig.joint_of[a], rig.joint_of[b]) for a, b, _ in bones]
         self.ids: list[int] = []
         self._lift = np.array([0.0, 0.0, 0.045 * height])
-        for (first, second), (_, _, share) in zip(self._joints, _BONES, strict=True):
+        for (first, second), (_, _, share) in zip(self._joints, bones, strict=True):
             radius = share * height
             length = float(np.linalg.norm(rig.heads[second] - rig.heads[first]))
             shape = client.createCollisionShape(

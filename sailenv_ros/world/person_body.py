@@ -1,4 +1,4 @@
-"""A person: a body that moves its limbs by itself, and that nothing pushes.
+"""A person or an animal: a body that moves its limbs by itself, and that nothing pushes.
 
 Its pose, and where its feet stand, follow from the way that it goes; its posture from that and
 time. In the engine it is capsules along its bones, which push others aside.
@@ -123,14 +123,14 @@ class PersonBody(Body):
         return new
 
     def push(self, wrench: RunningBehaviour) -> None:
-        """Refuse: nothing pushes a person.
+        """Refuse: nothing pushes what moves by itself.
 
         Raises
         ------
         InvalidRequest
         """
-        name = self.placement.name
-        raise InvalidRequest("object", name, "one that physics moves: people move by themselves")
+        accepted = "one that physics moves: people and animals move by themselves"
+        raise InvalidRequest("object", self.placement.name, accepted)
 
     def behave(
         self, running: RunningBehaviour, time_s: float, frustum_planes: FrustumPlanes
@@ -250,5 +250,5 @@ def deformations_of(
 
 
 def skeletons_of(bodies: Mapping[int, Body]) -> dict[int, Skeleton]:
-    """Return the skeletons of people, by their ids."""
+    """Return the skeletons of people and animals, by their ids."""
     return {id_: body.skeleton() for id_, body in bodies.items() if isinstance(body, PersonBody)}

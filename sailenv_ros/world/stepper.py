@@ -1,4 +1,4 @@
-"""A person's steps: the way that it goes, foot by foot, round others and up to its end.
+"""Steps of a person or an animal: the way that it goes, foot by foot, round others, to its end.
 
 Knows the crowd around, and not the engine; what is done where a way ends is told elsewhere.
 """
@@ -23,6 +23,7 @@ from sailenv_ros.postures.footsteps import (
     way_to_stand,
     way_to_turn,
 )
+from sailenv_ros.postures.gaits import gait_of
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
@@ -43,12 +44,12 @@ the height: hands come before the cylinder that ways are found for."""
 
 
 class Stepper:
-    """One person on its feet.
+    """One person, or an animal, on its feet.
 
     Parameters
     ----------
     name : str
-        Of the person.
+        Of it.
     asset : Asset
         With a rig.
     scale : float
@@ -69,7 +70,7 @@ class Stepper:
     def __init__(self, name: str, asset: Asset, scale: float) -> None:
         self._name, self._scale = name, scale
         self._actor = Actor(name=name, asset=asset, scale=scale, floor_m=0.0)
-        self._figure = self._actor.figure
+        self._gait = gait_of(asset)
         self.crowd: Crowd | None = None
         self.problem = ""
         self._looks_at = ""
@@ -80,7 +81,8 @@ class Stepper:
 
     @property
     def _size(self) -> BodySize:
-        return body_size(self._figure.height_m * 1.12 * self._scale, self._actor.floor_m)
+        gait = self._gait
+        return body_size(gait.height_m * self._scale, gait.radius, self._actor.floor_m)
 
     @property
     def _place(self) -> Place:
@@ -98,9 +100,9 @@ class Stepper:
         self._looks_at = ""
         self.matrix = self._matrix_of_moment()
 
-    def _feet_at(self, matrix: Doubles) -> tuple[FootPrint, FootPrint]:
-        width = self._figure.stride.width_m * self._scale
-        return standing_feet(float(matrix[0, 3]), float(matrix[1, 3]), yaw_of(matrix), width)
+    def _feet_at(self, matrix: Doubles) -> tuple[FootPrint, ...]:
+        x, y = float(matrix[0, 3]), float(matrix[1, 3])
+        return standing_feet(x, y, yaw_of(matrix), self._stride())
 
     def _moment(self) -> Moment:
         if self._way is not None:
@@ -109,7 +111,7 @@ class Stepper:
 
     def _own_moment(self) -> Moment:
         """Return it before the scale."""
-        return self._moment().scaled(1.0 / self._scale)
+        return self._with_swing(self._moment().scaled(1.0 / self._scale))
 
     def _matrix_of_moment(self) -> Doubles:
         moment = self._moment()
@@ -122,12 +124,7 @@ class Stepper:
         ])  # fmt: skip
 
     def _stride(self) -> Stride:
-        stride = self._figure.stride
-        return replace(
-            stride,
-            length_m=stride.length_m * self._scale,
-            width_m=stride.width_m * self._scale,
-        )
+        return self._gait.stride.scaled(self._scale)
 
     def _go(self, place: Place, yaw: float | None) -> bool:
         if self.crowd is None:
@@ -174,10 +171,11 @@ class Stepper:
         share = _LEAST_SWING + (1.0 - _LEAST_SWING) * room_m / (_WIDE * self._size.height_m)
         return min(share, 1.0)
 
-    def _swing_now(self) -> float:
-        """Return that of arms now: from step to step it changes smoothly."""
+    def _with_swing(self, moment: Moment) -> Moment:
+        """Return it with the swing of arms now: from step to step it changes smoothly."""
         before, after = self._swings
-        return before + (after - before) * smooth_step(self._moment().share)
+        done = 1.0 if self._way is None else smooth_step(moment.share)
+        return replace(moment, arm_swing=before + (after - before) * done)
 
     def _wait(self, way: Way, number: int) -> None:
         """Stand where a step has ended; go round who stands in the way, or give up."""

@@ -1,4 +1,4 @@
-"""A person's way through the world: where it walks and looks, and what it does on the spot.
+"""Way of a person or an animal through the world: where it walks and looks, what it does there.
 
 Told by behaviours, moved by time. Knows the crowd around, and not the engine. What it does where a
 way ends is an activity of `world.activities`.
@@ -16,11 +16,11 @@ from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.behaviours.person import Activity, ClipPlay
 from sailenv_ros.postures.reaching import with_carrying_arm
 from sailenv_ros.postures.skeleton import Posture
-from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Held, Instant, SpotActivity
 from sailenv_ros.world.activities.handling import ways_to_put, ways_to_take
+from sailenv_ros.world.activities.haunches import FLOOR, Haunches, steps_up
 from sailenv_ros.world.activities.lying import lanes_for, ways_to_lie
 from sailenv_ros.world.activities.opening import ways_to_open
 from sailenv_ros.world.activities.playing import Playing
@@ -36,12 +36,12 @@ _STAND_OFF_M = 0.42
 
 
 class Walker(Stepper):
-    """One person on its way; a `behaviours.person.Person`.
+    """One person, or an animal, on its way; a `behaviours.person.Person`.
 
     Parameters
     ----------
     name : str
-        Of the person.
+        Of it.
     asset : Asset
         With a rig.
     scale : float
@@ -92,7 +92,7 @@ class Walker(Stepper):
         """Where its root and joints are now, in the body frame before the scale."""
         look = 0.0, 0.0
         if self._looks_at and self.crowd is not None:
-            eyes_m = self._figure.height_m * self._scale
+            eyes_m = self._gait.eyes_m * self._scale
             look = self.crowd.look_deg(self._looks_at, self.matrix, eyes_m)
         now = Instant(
             moment=self._own_moment(),
@@ -102,10 +102,9 @@ class Walker(Stepper):
         )
         if self._does is not None and self._way is None:
             return self._does.posture(now)
-        posture = walking_posture(
-            self._actor.rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg,
-            swing=self._swing_now(),
-        )  # fmt: skip
+        posture = self._gait.posture(
+            self._actor.rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg
+        )
         return posture if self.held is None else with_carrying_arm(self._actor.rig, posture)
 
     # -- what behaviours tell it (see behaviours.person.Person) --------------------------------
@@ -136,6 +135,8 @@ class Walker(Stepper):
 
     def sit_on(self, name: str) -> bool:
         """Begin to walk to a seat and sit down; False if it cannot."""
+        if self._on_four:
+            return name == FLOOR and self._sit_down()
         return self.crowd is not None and self._go_and(ways_to_sit(self._actor, self.crowd, name))
 
     def lie_on(self, name: str) -> bool:
@@ -184,6 +185,8 @@ class Walker(Stepper):
         """Return the names of seats that nobody has taken."""
         if self.crowd is None:
             return ()
+        if self._on_four:
+            return (FLOOR,)
         return tuple(dict.fromkeys(seat.name for seat in seats_for(self._actor, self.crowd)))
 
     def beds(self) -> tuple[str, ...]:
@@ -206,6 +209,18 @@ class Walker(Stepper):
     def _begins(self, place: Place, yaw: float | None) -> bool:
         """Begin to walk to a place; False if no way leads there, or something is being done."""
         return self._does is None and self._go(place, yaw)
+
+    @property
+    def _on_four(self) -> bool:
+        return self._actor.rig.legs == 4
+
+    def _sit_down(self) -> bool:
+        """Begin to sit down on the floor; False if something is being done."""
+        if self._does is not None or self._way is not None:
+            return False
+        self._way, self._way_s, self._goal = steps_up(self._actor, self._feet), 0.0, None
+        self._does = Haunches(self._actor, self._place)
+        return True
 
     def _stopped(self) -> None:
         self.leave()

@@ -165,6 +165,8 @@ def _keypoints(frame: Frame, instance_id: int) -> dict[str, Any]:
     if frame.states is None or instance_id not in frame.states.skeletons:
         return {}
     points = frame.keypoints(instance_id)
+    if points.names != COCO_KEYPOINTS:
+        return {}  # those of an animal are not COCO's
     place = {name: number for number, name in enumerate(points.names)}
     found: list[float] = []
     for name in COCO_KEYPOINTS:

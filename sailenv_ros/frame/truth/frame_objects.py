@@ -107,8 +107,9 @@ def keypoints_of(frame: FrameData, table: ObjectTable, instance_id: int) -> Keyp
     """
     row = table.row(instance_id)
     info = _info(frame)
-    if frame.states is not None and instance_id in frame.states.skeletons:
-        own = frame.states.skeletons[instance_id]
+    skeletons = {} if frame.states is None else frame.states.skeletons
+    own = skeletons.get(instance_id)
+    if own is not None and own.point_names:
         return person_points(frame, instance_id, own.point_names, own.points)
     instance = next(one for one in info.instances if one.id == instance_id)
     points = instance.keypoints or corner_keypoints(instance.low_m, instance.high_m)

@@ -1,4 +1,4 @@
-"""A person's keypoints in a frame: where they are in the picture, and what hides them."""
+"""Keypoints and joints of who has a skeleton: where they are in a frame, what hides them."""
 
 from __future__ import annotations
 
@@ -16,6 +16,9 @@ __all__ = ["FLESH_M", "own_ids", "person_points", "skeleton_of"]
 FLESH_M = 0.2
 """How far below the skin a joint may lie that counts as seen [m]; what hides it is farther off."""
 
+_FLESH = 0.125
+"""That of an animal, over the length of its skeleton."""
+
 
 def skeleton_of(frame: FrameData, instance_id: int) -> Skeleton:
     """Return the skeleton of an instance.
@@ -27,7 +30,8 @@ def skeleton_of(frame: FrameData, instance_id: int) -> Skeleton:
     """
     found = {} if frame.states is None else frame.states.skeletons
     if instance_id not in found:
-        raise InvalidRequest("instance id", instance_id, f"that of a person: {sorted(found)}")
+        accepted = f"that of a person or an animal: {sorted(found)}"
+        raise InvalidRequest("instance id", instance_id, accepted)
     return found[instance_id]
 
 
@@ -46,10 +50,10 @@ def person_points(
     names: tuple[str, ...],
     world: NDArray[np.float64],
 ) -> Keypoints:
-    """Return points of a person, such as its keypoints or its joints, as a frame sees them.
+    """Return points of a person or an animal, its keypoints or joints, as a frame sees them.
 
-    A point is seen where the picture shows the person at its pixel, with the point no deeper than
-    flesh is, or what lies behind the person.
+    A point is seen where the picture shows its owner at its pixel, with the point no deeper than
+    flesh is, or what lies behind the owner.
 
     Parameters
     ----------
@@ -57,6 +61,7 @@ def person_points(
     world : (K, 3) float64
         World frame [m].
     """
+    flesh_m = _flesh_m(skeleton_of(frame, instance_id))
     lens, camera = frame.camera.intrinsics, frame.camera.camera_from_world
     optical = world @ camera[:3, :3].T + camera[:3, 3]
     pixels = lens.project(optical)
@@ -73,8 +78,15 @@ def person_points(
         shown = frame["instance"][rows, columns].astype(np.int64)
         before = view[rows, columns].astype(np.float64)
         is_own = np.isin(shown, own_ids(frame, instance_id))
-        flesh = np.where(is_own, FLESH_M, 0.01 * depths[inside])
+        flesh = np.where(is_own, flesh_m, 0.01 * depths[inside])
         seen = before >= depths[inside] - flesh
         visible[inside] = seen
         hidden_by[inside] = np.where(seen, 0, shown)
     return Keypoints(names=names, world=world, pixels=pixels, visible=visible, hidden_by=hidden_by)
+
+
+def _flesh_m(skeleton: Skeleton) -> float:
+    """Return `FLESH_M`, or less for an animal, which has no keypoints of people [m]."""
+    if skeleton.point_names:
+        return FLESH_M
+    return min(FLESH_M, _FLESH * float(np.ptp(skeleton.joints, axis=0).max()))

@@ -148,7 +148,7 @@ def _reaches(actor: Actor, feet: Place, yaw: float, place: Doubles) -> bool:
     c, s = float(np.cos(yaw)), float(np.sin(yaw))
     x, y = place[0] - feet[0], place[1] - feet[1]
     goal = np.array([c * x + s * y, c * y - s * x, place[2] - actor.floor_m]) / actor.scale
-    moment = moment_of(standing_feet(0.0, 0.0, 0.0, actor.figure.stride.width_m))
+    moment = moment_of(standing_feet(0.0, 0.0, 0.0, actor.figure.stride))
     stands = walking_posture(actor.rig, moment, 0.0)
     return reaching_posture(actor.rig, stands, moment, goal, _GRIP) is not None
 

@@ -67,7 +67,7 @@ class Sitting(SpotActivity):
 
     def seated_posture(self) -> Posture:
         """Return the posture of one who sits, with the feet side by side."""
-        feet = standing_feet(0.0, 0.0, 0.0, figure_of(self._rig).stride.width_m)
+        feet = standing_feet(0.0, 0.0, 0.0, figure_of(self._rig).stride)
         return sitting_posture(self._rig, moment_of(feet), self._seat, 1.0, 0.0)
 
     def posture(self, now: Instant) -> Posture:

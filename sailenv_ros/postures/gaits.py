@@ -1,0 +1,71 @@
+"""Gaits: how the body of an asset goes and stands, on two legs or on four."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from sailenv_ros.postures.animal_figure import animal_figure_of
+from sailenv_ros.postures.figure import figure_of
+from sailenv_ros.postures.footsteps import Moment, Stride
+from sailenv_ros.postures.four_legs import four_legged_posture
+from sailenv_ros.postures.skeleton import Posture
+from sailenv_ros.postures.walking import walking_posture
+from sailenv_ros.types.model import Asset
+from sailenv_ros.types.rig import Rig
+
+__all__ = ["Gait", "gait_of"]
+
+_RADIUS = 0.172
+"""Of a person, as a share of the height."""
+
+
+class _PostureFunction(Protocol):
+    def __call__(
+        self, rig: Rig, moment: Moment, time_s: float, *, seed: int, look_deg: tuple[float, float]
+    ) -> Posture:
+        """Return the posture of a body on its way; see `walking_posture`."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Gait:
+    """How one body goes; all before the scale.
+
+    Attributes
+    ----------
+    stride : Stride
+    height_m, eyes_m : float
+        Of the body, and of its eyes.
+    radius : float
+        Of the cylinder that it turns in, over the height.
+    posture : callable
+        As `walking_posture`.
+    """
+
+    stride: Stride
+    height_m: float
+    eyes_m: float
+    radius: float
+    posture: _PostureFunction
+
+
+def gait_of(asset: Asset) -> Gait:
+    """Return the gait of an asset with a rig."""
+    assert asset.rig is not None
+    if asset.rig.legs == 2:
+        figure = figure_of(asset.rig)
+        return Gait(
+            stride=figure.stride,
+            height_m=figure.height_m * 1.12,
+            eyes_m=figure.height_m,
+            radius=_RADIUS,
+            posture=walking_posture,
+        )
+    animal = animal_figure_of(asset.rig)
+    return Gait(
+        stride=animal.stride,
+        height_m=animal.height_m,
+        eyes_m=float(asset.rig.head("head")[2]),
+        radius=animal.radius_m / animal.height_m,
+        posture=four_legged_posture,
+    )

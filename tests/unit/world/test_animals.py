@@ -1,0 +1,196 @@
+"""Animals of the world: paws that stand, ways round furniture and others, whom behaviours suit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.assets.sources import installed_sources
+from sailenv_ros.behaviours import start_behaviour
+from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.types.model import Asset
+from sailenv_ros.world.person_body import PersonBody
+from tests.support.peopled_worlds import box, one, person, placed, world_of
+
+PAWS = ("forepaw.L", "forepaw.R", "hindpaw.L", "hindpaw.R")
+
+
+@pytest.fixture(scope="module")
+def cat() -> Asset:
+    return AssetLibrary(installed_sources()).get("cat_03")
+
+
+@pytest.fixture(scope="module")
+def dog() -> Asset:
+    return AssetLibrary(installed_sources()).get("dog_03")
+
+
+def paws_of(body: PersonBody) -> np.ndarray:
+    joints = body.skeleton()
+    return np.array([joints.joints[joints.joint_names.index(name)] for name in PAWS])
+
+
+def skin_of(body: PersonBody) -> np.ndarray:
+    """The first mesh in the world: the body without the head."""
+    own = body.deformation().meshes[0].positions.astype(np.float64)
+    matrix = body.world_from_body()
+    return own @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+@pytest.mark.parametrize("name", ["cat_03", "dog_02"])
+def test_paws_that_stand_do_not_move_and_soles_are_on_the_floor(name: str) -> None:
+    asset = AssetLibrary(installed_sources()).get(name)
+    assert asset.rig is not None
+    world = world_of(
+        placed("tom", asset, -1.2, 0.0, 160.0), placed("far", box("b", (0.3,) * 3), 3, 3)
+    )
+    tom = one(world, "tom")
+    world.step(1)
+    soles = []
+    bones = asset.rig.bones[0][:, 0]
+    low = asset.model.parts[0].mesh.positions[:, 2] < 1e-6
+    for paw in PAWS:
+        soles.append(np.flatnonzero(low & (bones == asset.rig.joint_of[paw])))
+        assert len(soles[-1]) > 5
+    assert tom.walker.walk_to((1.2, 0.9))  # it turns first
+    standing, checked = None, np.zeros(4, int)
+    while tom.walker.activity == "walking":
+        moment = tom.walker._moment()
+        paws, skin = paws_of(tom), skin_of(tom)
+        for number, place in enumerate(moment.feet):
+            if number == moment.swinging:
+                continue
+            # On its print, with a flat sole that stays as it is.
+            assert np.abs(paws[number, :2] - [place.x, place.y]).max() < 1e-9
+            assert np.abs(skin[soles[number], 2]).max() < 1e-5
+            if standing is not None and moment.feet[number] is standing[0][number]:
+                slide = np.abs(skin[soles[number]] - standing[1][soles[number]]).max()
+                assert slide < 2e-6
+                checked[number] += 1
+        assert skin[:, 2].min() > -0.005
+        standing = (moment.feet, skin)
+        world.step(6)
+    assert np.hypot(*np.subtract(tom.pose().position_m[:2], (1.2, 0.9))) < 0.05
+    assert (checked > 20).all()
+    world.close()
+
+
+def test_an_animal_walks_round_furniture_and_keeps_out_of_it(cat: Asset) -> None:
+    wall = placed("wall", box("w", (0.2, 1.6, 0.6)), 0.0, 0.0, static=True)
+    pillar = placed("pillar", box("p", (0.3, 0.3, 0.6)), 0.7, 1.2, 30.0, static=True)
+    world = world_of(placed("tom", cat, -1.0, 0.0), wall, pillar)
+    tom = one(world, "tom")
+    world.step(1)
+    assert tom.walker.walk_to((1.0, 0.0))
+    turned = np.radians(30.0)
+    own = np.array([[np.cos(turned), np.sin(turned)], [-np.sin(turned), np.cos(turned)]])
+    deepest = 0.0
+    while tom.walker.activity == "walking":
+        skin = skin_of(tom)
+        in_wall = np.minimum(0.1 - np.abs(skin[:, 0]), 0.8 - np.abs(skin[:, 1]))
+        beside = np.abs((skin[:, :2] - [0.7, 1.2]) @ own.T)
+        in_pillar = (0.15 - beside).min(axis=1)
+        deepest = max(deepest, float(in_wall.max()), float(in_pillar.max()))
+        world.step(12)
+    assert np.hypot(tom.pose().position_m[0] - 1.0, tom.pose().position_m[1]) < 0.05
+    assert deepest < 0.02
+    world.close()
+
+
+def test_animals_and_people_do_not_walk_through_each_other(dog: Asset) -> None:
+    world = world_of(
+        placed("rex", dog, -1.5, 0.0),
+        person("ben", 1.5, 0.05),
+        placed("far", box("b", (0.3, 0.3, 0.5)), 4, 4),
+    )
+    rex, ben = one(world, "rex"), one(world, "ben")
+    world.step(1)
+    assert rex.walker.walk_to((1.5, 0.0))
+    assert ben.walker.walk_to((-1.5, 0.0))
+    nearest = 9.0
+    for _ in range(600):
+        world.step(12)
+        between = np.subtract(rex.pose().position_m, ben.pose().position_m)
+        nearest = min(nearest, float(np.hypot(*between[:2])))
+        if rex.walker.activity == ben.walker.activity == "standing":
+            break
+    assert nearest > 0.35
+    assert abs(ben.pose().position_m[0] - 1.5) > 0.5
+    world.close()
+
+
+def test_legs_of_one_that_stands_are_the_same_bytes(cat: Asset) -> None:
+    assert cat.rig is not None
+    world = world_of(placed("tom", cat, 0.0, 0.0))
+    world.step(5)
+    first = next(iter(world.snapshot().deformations.values())).meshes[0].positions
+    world.step(90)
+    second = next(iter(world.snapshot().deformations.values())).meshes[0].positions
+    shanks = [cat.rig.joint_of[f"{bone}.{side}"] for bone in ("wrist", "hock") for side in "LR"]
+    own = [*shanks, *(cat.rig.joint_of[paw] for paw in PAWS)]
+    legs = (np.isin(cat.rig.bones[0], own) * cat.rig.weights[0]).sum(axis=1) > 0.999
+    assert legs.sum() > 100
+    assert (first[legs] == second[legs]).all()
+    assert (first != second).any()  # it breathes
+    world.close()
+
+
+@pytest.mark.parametrize("name", ["cat_02", "dog_01"])
+def test_one_sits_down_on_the_floor_and_gets_up(name: str) -> None:
+    asset = AssetLibrary(installed_sources()).get(name)
+    world = world_of(placed("tom", asset, 0.0, 0.0), placed("far", box("b", (0.3, 0.3, 0.5)), 3, 3))
+    tom = one(world, "tom")
+    world.step(1)
+    assert tom.walker.seats() == ("floor",)
+    assert not tom.walker.sit_on("far")
+    before = paws_of(tom)
+    assert tom.walker.sit_on("floor")
+    seen = []
+    for _ in range(60):
+        world.step(12)
+        seen.append(tom.walker.activity)
+    assert list(dict.fromkeys(seen)) == ["walking", "sitting down", "seated"]
+    paws = paws_of(tom)
+    assert np.abs(paws[:2] - before[:2]).max() < 1e-9  # it stands on those in front
+    assert np.abs(paws[:, 2] - before[:, 2]).max() < 1e-9
+    skeleton = tom.skeleton()
+    root, chest = (skeleton.joints[skeleton.joint_names.index(n)] for n in ("root", "spine03"))
+    assert root[2] < 0.5 * chest[2]
+    low = min(float(mesh.positions[:, 2].min()) for mesh in tom.deformation().meshes)
+    assert abs(low) < 0.006  # upon the floor
+    tom.walker.get_up()
+    for _ in range(30):
+        world.step(12)
+    assert tom.walker.activity == "standing"
+    assert tom.walker.walk_to((1.0, 0.5))
+    world.close()
+
+
+def test_behaviours_that_need_hands_are_refused(cat: Asset) -> None:
+    world = world_of(placed("tom", cat, 0.0, 0.0))
+    tom = world.body(world.find("tom"))
+    tom.attach(start_behaviour("walk_around", {}, seed=1, object_name="tom", place=0))
+    orders = {"objects": ["a"], "to": ["b"]}
+    fetches = start_behaviour("fetch", orders, seed=1, object_name="tom", place=1)
+    with pytest.raises(InvalidRequest, match="a person for the behaviour 'fetch'"):
+        tom.attach(fetches)
+    world.close()
+
+
+def test_the_same_seed_gives_the_same_bytes(cat: Asset) -> None:
+    found = []
+    for _ in range(2):
+        strolls = start_behaviour(
+            "walk_around", {"pause": (0.1, 0.4)}, seed=3, object_name="tom", place=0
+        )
+        world = world_of(
+            placed("tom", cat, -1.0, 0.0, behaviours=(strolls,)),
+            placed("far", box("b", (0.3, 0.3, 0.5)), 2, 2),
+        )
+        world.step(900)
+        states = world.states()
+        shapes = [shape.meshes[0].positions.tobytes() for shape in states.deformations.values()]
+        found.append((states.positions.tobytes(), *shapes))
+        world.close()
+    assert found[0] == found[1]
