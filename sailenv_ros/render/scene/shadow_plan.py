@@ -216,9 +216,10 @@ class ShadowPlan:
             if len(self._at_rest) == len(gone):
                 self._at_rest = brought(self._at_rest)
                 self._rest_poses = placed(self._rest_poses)
-                stood = np.zeros(len(keys), np.intp)
+            stood = np.zeros(len(keys), np.intp)
+            if len(self._stood) == len(gone):
                 stood[known] = self._stood[rows[known]]
-                self._stood = stood
+            self._stood = stood
         # The number of a model is unique only while it lives: the contents keep it.
         self._contents, self._keys = contents, keys
 

@@ -68,3 +68,11 @@ def test_what_has_stopped_is_drawn_with_what_rests() -> None:
     assert drawn(settling) == drawn(redraws[-1]) == [1]
     # It moves again: all is drawn anew.
     assert drawn(plan.update(SUN, at(3.0, 0.4))) == [0, 1, 2, 3]
+
+
+def test_things_may_all_go_and_come_back() -> None:
+    plan = ShadowPlan()
+    nothing = snapshot_of([], lights=(SUN,))
+    for step in range(3):
+        assert drawn(plan.update(SUN, at(0.1 * step, 0.0))) == [0, 1, 2, 3]
+        assert drawn(plan.update(SUN, nothing)) == []
