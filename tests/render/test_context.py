@@ -156,7 +156,7 @@ def resident_kb():
 for _ in range(3):
     pass_by()
 grown = []
-for _ in range(2):
+for _ in range(3):
     start = resident_kb()
     for _ in range(10):
         pass_by()

@@ -59,7 +59,7 @@ def seen_exposure(environment: Environment) -> float | None:
     return environment.exposure if environment.sky_blend else None
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=1)
 def seen_sky(sky: SkyMap, exposure: float | None = None) -> NDArray[np.float16]:
     """Return (`FINER` H, `FINER` 2 H, 3) float16: the radiance that is seen of a sky.
 
