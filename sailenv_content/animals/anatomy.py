@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from sailenv_content.animals.looks import AnimalLook
 
-__all__ = ["TAIL_JOINTS", "Anatomy", "anatomy_of"]
+__all__ = ["SPINE", "TAIL_JOINTS", "Anatomy", "anatomy_of"]
 
 Doubles = NDArray[np.float64]
 Place = tuple[float, float, float]
 
 TAIL_JOINTS = 7
 
-_TRUNK = ("root", "spine01", "spine02", "spine03")
+SPINE = ("root", "spine01", "spine02", "spine03")
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,7 @@ def anatomy_of(look: AnimalLook) -> Anatomy:
         return np.array([look.length * place[0], place[1], place[2]])
 
     parent = ""
-    for name, place in zip(_TRUNK, kind.trunk, strict=True):
+    for name, place in zip(SPINE, kind.trunk, strict=True):
         parent = add(name, parent, longer(place))
     front = longer(kind.trunk[3]) - np.array(kind.trunk[3])
     base = np.array(kind.neck[0])

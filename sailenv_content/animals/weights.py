@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_content.animals.anatomy import Anatomy
+from sailenv_content.animals.anatomy import SPINE, Anatomy
 from sailenv_content.animals.solids import Body
 
 __all__ = ["dense_weights"]
@@ -17,7 +17,6 @@ __all__ = ["dense_weights"]
 Doubles = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-_SPINE = ("root", "spine01", "spine02", "spine03")
 _SOFT = 0.022
 """Distance over the height of the withers within which the share of a joint falls to 1 / e."""
 
@@ -39,7 +38,7 @@ def dense_weights(anatomy: Anatomy, body: Body, vertices: Doubles, triangles: In
     away = np.maximum(away - away.min(axis=1, keepdims=True), 0.0)
     shares = np.exp(-away / (_SOFT * anatomy.unit))
     dense, trunk = shares[:, :-1], shares[:, -1]
-    dense[:, [place[name] for name in _SPINE]] += trunk[:, None] * _along(anatomy, vertices)
+    dense[:, [place[name] for name in SPINE]] += trunk[:, None] * _along(anatomy, vertices)
     dense = _evened(dense / dense.sum(axis=1, keepdims=True), triangles)
     _breathe(anatomy, dense, vertices, place)
     for name in names:
@@ -51,10 +50,10 @@ def dense_weights(anatomy: Anatomy, body: Body, vertices: Doubles, triangles: In
 
 def _along(anatomy: Anatomy, vertices: Doubles) -> Doubles:
     """Return (V, 4): the shares of the vertebrae, by where they are along x."""
-    places = np.array([anatomy[name][0] for name in _SPINE])
+    places = np.array([anatomy[name][0] for name in SPINE])
     middles = np.append(0.5 * (places[1:] + places[:-1]), places[-1] + 0.05 * anatomy.unit)
     return np.column_stack([
-        np.interp(vertices[:, 0], middles, row) for row in np.eye(len(_SPINE))
+        np.interp(vertices[:, 0], middles, row) for row in np.eye(len(SPINE))
     ])  # fmt: skip
 
 
@@ -64,7 +63,7 @@ def _breathe(anatomy: Anatomy, dense: Doubles, vertices: Doubles, place: dict[st
     reach = anatomy.look.length
     within = np.clip((0.34 * reach - x) / 0.12, 0.0, 1.0) * np.clip((x + 0.36 * reach) / 0.15, 0, 1)
     part = _BELLY_SHARE * within * np.clip((0.74 - z) / 0.14, 0.0, 1.0)
-    spine = [place[name] for name in _SPINE]
+    spine = [place[name] for name in SPINE]
     dense[:, place["belly"]] += part * dense[:, spine].sum(axis=1)
     dense[:, spine] *= (1.0 - part)[:, None]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +48,9 @@ class BehaviourParameters(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    legs: ClassVar[tuple[int, ...]] = ()
+    """Numbers of legs of those that it moves alone; empty if it moves other things."""
+
     start: Annotated[float, Number(least=0.0, most=1e6, unit="s")] = Field(
         default=0.0, description="time after the object's appearance at which it begins [s]"
     )
@@ -71,11 +74,6 @@ class BehaviourParameters(BaseModel):
     def needs_joint(self) -> bool:
         """True if it moves nothing but joints."""
         return False
-
-    @property
-    def legs(self) -> tuple[int, ...]:
-        """Numbers of legs of those that it moves alone; empty if it moves other things."""
-        return ()
 
     @property
     def viewer(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Annotated, Any, Literal, NamedTuple, Protocol, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from pydantic import Field
@@ -124,14 +124,11 @@ class Person(Protocol):
 class PersonParameters(BehaviourParameters):
     """Base of the parameters of behaviours of people."""
 
+    legs: ClassVar[tuple[int, ...]] = (2,)
+
     pause: tuple[Seconds, Seconds] = Field(
         default=(1.0, 4.0), description="shortest and longest pause [s]"
     )
-
-    @property
-    def legs(self) -> tuple[int, ...]:
-        """Numbers of legs of those who can do it: people alone, unless it says so."""
-        return (2,)
 
 
 PersonFunction: TypeAlias = Callable[

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from pydantic import Field
 
 from sailenv_ros.behaviours.person import (
@@ -18,17 +20,14 @@ __all__ = ["Sit", "sit"]
 class Sit(PersonParameters):
     """Parameters of `sit`."""
 
+    legs: ClassVar[tuple[int, ...]] = (2, 4)
+
     seats: tuple[str, ...] = Field(
         default=(), max_length=64, description="names of the seats; none: whatever one can sit on"
     )
     sitting: tuple[Seconds, Seconds] = Field(
         default=(8.0, 30.0), description="shortest and longest time on a seat [s]"
     )
-
-    @property
-    def legs(self) -> tuple[int, ...]:
-        """People and animals."""
-        return 2, 4
 
 
 @resting_behaviour("sit", Sit)

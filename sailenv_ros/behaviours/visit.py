@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -15,14 +15,11 @@ __all__ = ["Visit", "visit"]
 class Visit(PersonParameters):
     """Parameters of `visit`."""
 
+    legs: ClassVar[tuple[int, ...]] = (2, 4)
+
     objects: tuple[str, ...] = Field(
         default=(), max_length=64, description="names of what is visited in turn; none: at random"
     )
-
-    @property
-    def legs(self) -> tuple[int, ...]:
-        """People and animals."""
-        return 2, 4
 
 
 @person_behaviour("visit", Visit)

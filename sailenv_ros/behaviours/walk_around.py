@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -14,10 +14,7 @@ __all__ = ["WalkAround", "walk_around"]
 class WalkAround(PersonParameters):
     """Parameters of `walk_around`."""
 
-    @property
-    def legs(self) -> tuple[int, ...]:
-        """People and animals."""
-        return 2, 4
+    legs: ClassVar[tuple[int, ...]] = (2, 4)
 
 
 @person_behaviour("walk_around", WalkAround)

@@ -208,12 +208,6 @@ class Crowd:
         cells = [space.cell_of((x, y)) for x, y in places.tolist()]
         return all(cell is not None and space.cells[cell] == FREE for cell in cells)
 
-    def clearance_m(self, size: BodySize, place: Place) -> float:
-        """Return how far furniture is from a body at a place, at least [m]; 0 beside the map."""
-        space = self.free_space(size)
-        cell = space.cell_of(place)
-        return 0.0 if cell is None else float(space.clearance_m[cell])
-
     def way(
         self, size: BodySize, start: Place, goal: Place, around: Iterable[Disc] = ()
     ) -> list[Place] | None:

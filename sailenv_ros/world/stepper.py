@@ -24,7 +24,7 @@ from sailenv_ros.postures.footsteps import (
     way_to_turn,
 )
 from sailenv_ros.postures.gaits import gait_of
-from sailenv_ros.space.free_space import BodySize
+from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Actor
@@ -96,6 +96,7 @@ class Stepper:
         self._way_s = 0.0
         self._waited_s = 0.0
         self._swings = 1.0, 1.0
+        self._space: FreeSpace | None = None
         self._goal: tuple[Place, float | None] | None = None
         self._looks_at = ""
         self.matrix = self._matrix_of_moment()
@@ -144,6 +145,8 @@ class Stepper:
         if not way.prints:
             return True
         self._way, self._way_s, self._waited_s = way, 0.0, 0.0
+        # The map that the way was found in: a new one at each step would cost more than the walk.
+        self._space = None if self.crowd is None else self.crowd.free_space(self._size)
         self._looks_at = ""
         return True
 
@@ -165,10 +168,12 @@ class Stepper:
 
     def _swing_at(self, moment: Moment) -> float:
         """Return the share of their swing that arms have room for."""
-        if self.crowd is None:
+        space = self._space
+        if space is None:
             return 1.0
-        room_m = self.crowd.clearance_m(self._size, (moment.x, moment.y))
-        share = _LEAST_SWING + (1.0 - _LEAST_SWING) * room_m / (_WIDE * self._size.height_m)
+        cell = space.cell_of((moment.x, moment.y))
+        room_m = 0.0 if cell is None else float(space.clearance_m[cell])
+        share = _LEAST_SWING + (1.0 - _LEAST_SWING) * room_m / (_WIDE * space.body.height_m)
         return min(share, 1.0)
 
     def _with_swing(self, moment: Moment) -> Moment:

@@ -167,10 +167,8 @@ def _keypoints(frame: Frame, instance_id: int) -> dict[str, Any]:
     points = frame.keypoints(instance_id)
     if points.names != COCO_KEYPOINTS:
         return {}  # those of an animal are not COCO's
-    place = {name: number for number, name in enumerate(points.names)}
     found: list[float] = []
-    for name in COCO_KEYPOINTS:
-        number = place[name]
+    for number in range(len(COCO_KEYPOINTS)):
         if points.hidden_by[number] < 0:
             found += [0, 0, 0]
             continue
