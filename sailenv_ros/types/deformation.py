@@ -89,9 +89,9 @@ class Deformation:
         found = [mesh.positions for mesh in self.meshes if len(mesh.positions)]
         if not found:
             return np.zeros((2, 3))
-        low = np.min([positions.min(axis=0) for positions in found], axis=0)
-        high = np.max([positions.max(axis=0) for positions in found], axis=0)
-        return np.array([low, high], np.float64)
+        # Rows of one coordinate are compared many at a time.
+        columns = np.concatenate(found).T.copy()
+        return np.array([columns.min(axis=1), columns.max(axis=1)], np.float64)
 
     def only(self, meshes: tuple[int, ...]) -> Deformation:
         """Return that of some parts, by their places; the same object for the same ones."""

@@ -60,11 +60,11 @@ class MeshArrays:
         if moved is self._moved:
             return
         self._moved = moved
-        corners = moved.positions[self.corner_sources]
+        corners = moved.positions.take(self.corner_sources, axis=0)
         self.corners[:, : self.corner_count] = corners.T
         self.vertices[:, :3] = moved.normals
         move_clusters(corners, self.corner_indices, self.clusters)
-        self.sphere = _sphere_of(corners)
+        self.sphere = _sphere_of(self.corners[:, : self.corner_count])
 
 
 class MeshStore:
@@ -106,16 +106,19 @@ def _mesh_arrays(drawn: DrawnMesh) -> MeshArrays:
         vertex_indices=np.ascontiguousarray(triangles.reshape(-1), np.uint32),
         vertices=vertices,
         clusters=np.ascontiguousarray(clusters.astype(CLUSTER)),
-        sphere=_sphere_of(corners),
+        sphere=_sphere_of(columns[:, : len(corners)]),
         corner_sources=corner_sources(triangles, numbers) if drawn.owner else _NO_SOURCES,
     )
 
 
-def _sphere_of(corners: NDArray[np.float32]) -> NDArray[np.float64]:
+def _sphere_of(columns: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Return centre and radius of a sphere around corners (3, K)."""
     sphere = np.zeros(4)
-    if len(corners):
-        low, high = corners.min(axis=0), corners.max(axis=0)
+    if columns.size:
+        low, high = columns.min(axis=1), columns.max(axis=1)
         sphere[:3] = 0.5 * (low.astype(np.float64) + high)
+        away = columns - sphere[:3, None]
+        away *= away
         # Kernels read it in single precision.
-        sphere[3] = 1.0001 * np.linalg.norm(corners - sphere[:3], axis=1).max() + 1e-6
+        sphere[3] = 1.0001 * np.sqrt((away[0] + away[1] + away[2]).max()) + 1e-6
     return sphere

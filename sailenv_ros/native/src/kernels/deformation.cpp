@@ -2,6 +2,7 @@
 // the points of a picture are; see native/deformation_kernels.py.
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "../threads.h"
 #include "rays.h"
@@ -282,8 +283,14 @@ bool find_nearest(const RayShape& s, const Point& p, double reach, Nearest& best
     return best.triangle != std::numeric_limits<int32_t>::max();
 }
 
-// `leaf` is where the neighbour was found, -1 for nowhere, and becomes where this one is.
-void find_pixel(const SurfacePoints& in, int64_t at, int64_t row, int32_t& leaf) {
+// Where a neighbour was found; 0 for what is rigid.
+struct Found {
+    int32_t row = 0, leaf = -1;
+};
+
+// `leaf` becomes where the point is; it is looked for first where its neighbours were found.
+void find_pixel(const SurfacePoints& in, int64_t at, int64_t row, const int32_t* near_leaves,
+                int64_t near_count, int32_t& leaf) {
     const RayShape& shape = in.shapes[row];
     const double* scale = in.scales + 3 * row;
     float* found = in.found + 3 * at;
@@ -294,7 +301,9 @@ void find_pixel(const SurfacePoints& in, int64_t at, int64_t row, int32_t& leaf)
         known = known && p.x[k] - p.x[k] == 0.0;
     }
     Nearest best{ON_SURFACE * ON_SURFACE, std::numeric_limits<int32_t>::max(), -1, {}};
-    if (known && leaf >= 0) look_over_leaf(shape, leaf, p, best);
+    for (int64_t k = 0; known && k < near_count && best.leaf < 0; k++) {
+        look_over_leaf(shape, near_leaves[k], p, best);
+    }
     bool near = best.leaf >= 0;
     double reach = FIRST_REACH;
     while (known && !near && reach <= LAST_REACH) {
@@ -369,14 +378,25 @@ SAILENV_KERNEL(surface_points)(int64_t threads, const SurfacePoints* given) {
     const SurfacePoints in = *given;
     if (in.height < 0 || in.width < 0 || in.rows < 0) return STATUS_INVALID_ARGUMENT;
     parallel_for(threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
+        std::vector<Found> above(static_cast<size_t>(in.width) + 1);
         for (int64_t v = begin; v < end; v++) {
-            int64_t before = 0;
-            int32_t leaf = -1;
-            for (int64_t at = v * in.width; at < (v + 1) * in.width; at++) {
-                const int64_t asked = in.row_of_instance[in.instance[at]];
-                if (asked != before) leaf = -1;
-                before = asked;
-                if (asked >= 1 && asked <= in.rows) find_pixel(in, at, asked - 1, leaf);
+            Found left;
+            for (int64_t u = 0; u < in.width; u++) {
+                const int64_t at = v * in.width + u;
+                const auto row = static_cast<int32_t>(in.row_of_instance[in.instance[at]]);
+                Found here{row, -1};
+                if (row >= 1 && row <= in.rows) {
+                    int32_t leaves[3];
+                    int64_t count = 0;
+                    for (const Found& one : {left, above[u], above[u + 1]}) {
+                        if (one.row != row || one.leaf < 0) continue;
+                        bool is_new = true;
+                        for (int64_t k = 0; k < count; k++) is_new &= leaves[k] != one.leaf;
+                        if (is_new) leaves[count++] = one.leaf;
+                    }
+                    find_pixel(in, at, row - 1, leaves, count, here.leaf);
+                }
+                above[u] = left = here;
             }
         }
     });
