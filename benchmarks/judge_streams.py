@@ -3,18 +3,18 @@
     python benchmarks/judge_streams.py seek [--frames N]
     python benchmarks/judge_streams.py loader [--frames N] [--workers N]
     python benchmarks/judge_streams.py avalanche [--experiences N]
-    python benchmarks/judge_streams.py drift [--seed N]
-    python benchmarks/judge_streams.py still [--frames N] [--seed N]
+    python benchmarks/judge_streams.py drift [--seed N] [--habit NAME]
+    python benchmarks/judge_streams.py still [--frames N] [--seed N] [--habit NAME]
     python benchmarks/judge_streams.py memory [--frames N]
 
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
 shuffled. `avalanche` trains its `Naive` on experiences that are made when they are asked for.
 `drift` gives simple statistics of frames to river's ADWIN as they come, see `SIGNALS`: a camera
-that walks in one room, one drift at a time, which begins at a frame. `still` does so without any
-drift. ADWIN makes a test each 32 frames; its `delta`, the share of false alarms, is divided by the
-number of tests in 100,000 frames (Bonferroni). `memory` makes two frames of each episode of `home`,
-and tells the memory of the process.
+that walks, or stands, in one room, one drift at a time, which begins at a frame. `still` does so
+without any drift. ADWIN makes a test each 32 frames; its `delta`, the share of false alarms, is
+divided by the number of tests in 100,000 frames (Bonferroni). `memory` makes two frames of each
+episode of `home`, and tells the memory of the process.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -36,6 +36,7 @@ import yaml
 
 import sailenv_ros.streams as streams
 from sailenv_ros.dataset.streams.endless import LARGEST_KEPT_BYTES
+from sailenv_ros.streams.plan import HABITS
 from sailenv_ros.system.memory import keep_freed_memory
 
 SEED = 11
@@ -62,7 +63,7 @@ PLAIN: dict[str, Any] = {
     "visit": 1,
     "rooms": {"scenes": ["room_03"]},
     "eye": {
-        "width": 64, "height": 64, "walk": 1, "carry": 0, "fixate": 0, "stand": 0,
+        "width": 64, "height": 64,
         "picture": {"smooth_edges": False, "full_well": 4000, "read_noise": 3},
     },
     "moves": {"open": 2, "pushed": 3},
@@ -105,6 +106,7 @@ def main() -> None:
     still = actions.add_parser("still")
     for action in (drift, still):
         action.add_argument("--seed", type=int, default=SEED)
+        action.add_argument("--habit", choices=HABITS, default="walk")
     still.add_argument("--frames", type=int, default=FRAMES)
     memory = actions.add_parser("memory")
     memory.add_argument("--frames", type=int, default=410_000)
@@ -116,9 +118,9 @@ def main() -> None:
     elif options.action == "avalanche":
         judge_avalanche(options.experiences)
     elif options.action == "drift":
-        judge_drift(options.seed)
+        judge_drift(options.seed, options.habit)
     elif options.action == "still":
-        judge_stillness(options.frames, options.seed)
+        judge_stillness(options.frames, options.seed, options.habit)
     else:
         measure_memory(options.frames)
 
@@ -218,10 +220,10 @@ def judge_avalanche(count: int) -> None:
         print(f"experience {experience.current_experience}: {len(made)} made, {most_mib:.0f} MiB")
 
 
-def judge_drift(seed: int) -> None:
+def judge_drift(seed: int, habit: str) -> None:
     """Tell what river's ADWIN finds of each drift."""
     for name, drift in DRIFTS.items():
-        signals = _signals({**PLAIN, "drift": drift}, seed, ONSET - BEFORE, ONSET + AFTER)
+        signals = _signals({**_plain(habit), "drift": drift}, seed, ONSET - BEFORE, ONSET + AFTER)
         found = {
             signal: [place - BEFORE for place in _changes(values)]
             for signal, values in signals.items()
@@ -234,13 +236,13 @@ def judge_drift(seed: int) -> None:
         print(f"{name}: {told}; {early} before; {found}", flush=True)
 
 
-def judge_stillness(count: int, seed: int) -> None:
+def judge_stillness(count: int, seed: int, habit: str) -> None:
     """Tell what river's ADWIN finds where nothing drifts, after every 10,000 frames."""
     detectors = {signal: _detector() for signal in SIGNALS}
     found: dict[str, list[int]] = {signal: [] for signal in detectors}
     for begin in range(0, count, 10_000):
         end = min(count, begin + 10_000)
-        signals = _signals(PLAIN, seed, begin, end)
+        signals = _signals(_plain(habit), seed, begin, end)
         for signal, detector in detectors.items():
             for place, value in enumerate(signals[signal].tolist(), start=begin):
                 detector.update(value)
@@ -264,6 +266,12 @@ def resident_mib() -> float:
     """Return the memory of this process [MiB]."""
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     return pages * resource.getpagesize() / 2**20
+
+
+def _plain(habit: str) -> dict[str, Any]:
+    """Return the course without drift, for a camera of one habit."""
+    habits = {name: float(name == habit) for name in HABITS}
+    return {**PLAIN, "eye": {**PLAIN["eye"], **habits}}
 
 
 def _signals(course: dict[str, Any], seed: int, begin: int, end: int) -> dict[str, np.ndarray]:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lanes.h"
+#include "pixel_pairs.h"
 
 namespace sailenv {
 
@@ -63,9 +64,6 @@ typedef uint16_t u8_any __attribute__((vector_size(16), aligned(2), may_alias));
 LANES_INLINE i8 load_half_bits(const uint16_t* p) {
     return __builtin_convertvector(*reinterpret_cast<const u8_any*>(p), i8);
 }
-LANES_INLINE void store_half_bits(uint16_t* p, i8 x) {
-    *reinterpret_cast<u8_any*>(p) = __builtin_convertvector(x, u8_any);
-}
 
 // Four samples, each for two neighbouring pixels.
 LANES_INLINE f8 load_twice(const float* p) {
@@ -97,6 +95,42 @@ LANES_INLINE f8 arriving_factors(const SampleRows& rows, int64_t column, const f
     const f8 share = bit_cast_float(halves << 13) * 0x1p112f;
     const f8 closed = (255.0f - visibility) * (1.0f / 255.0f);
     return 1.0f - (share < 1.0f ? share : splat(1.0f)) * closed;
+}
+
+// Tells if all light arrives at neighbouring pixels of row `v`.
+inline bool all_arrives(const AmbientVisibility& ambient, int64_t v, int64_t first, int64_t count) {
+    const SampleRows rows(ambient, v / 2);
+    const int64_t begin = first / 2, end = (first + count - 1) / 2 + 2;
+    uint8_t least = 255;
+    for (int64_t k = begin; k < (end < ambient.columns ? end : ambient.columns); k++) {
+        least = least < rows.visibility[0][k] ? least : rows.visibility[0][k];
+        least = least < rows.visibility[1][k] ? least : rows.visibility[1][k];
+    }
+    return least == 255;
+}
+
+// The light of up to `DARKENED` neighbouring pixels of row `v` less what does not arrive, as bits
+// of halves (4 a pixel; the fourth are kept). Arrays begin at the first pixel.
+constexpr int64_t DARKENED = 64;
+
+inline void darken(const AmbientVisibility& ambient, int64_t v, int64_t first, int64_t count,
+                   const float* surface, const uint16_t* radiance, uint16_t* out) {
+    float factors[DARKENED + 8] = {};
+    const SampleRows rows(ambient, v / 2);
+    int64_t k = 0;
+    for (; k + 8 <= count && (first + k) / 2 + 5 <= ambient.columns; k += 8) {
+        store(factors + k, arriving_factors(rows, (first + k) / 2, surface + 2 * k,
+                                            radiance + 4 * k, ambient.same_surface));
+    }
+    for (; k < count; k++) {
+        const int32_t visibility =
+            arriving(rows, (first + k) / 2, surface[2 * k], ambient.same_surface);
+        factors[k] = arriving_factor(radiance[4 * k + 3], visibility);
+    }
+    finish_pairs(radiance, out, 0, count, [&factors](int64_t at, int64_t, const uint16_t* given) {
+        const f8 light = bit_cast_float(load_half_bits(given) << 13);
+        return (bits(light * for_pair(factors[at], factors[at + 1])) + 4096) >> 13;
+    });
 }
 
 }  // namespace sailenv

@@ -3,6 +3,7 @@
 #include "../abi.h"
 #include "../threads.h"
 #include "lanes.h"
+#include "pixel_pairs.h"
 #include "scratch.h"
 
 namespace {
@@ -20,8 +21,7 @@ LANES_INLINE f8 two_pixels(const uint16_t* radiance, int64_t pixels) {
 
 // One number for each of two pixels.
 LANES_INLINE f8 for_two(const float* of_pixels, int64_t pixels) {
-    const float a = of_pixels[0], b = of_pixels[pixels - 1];
-    return f8{a, a, a, a, b, b, b, b};
+    return sailenv::for_pair(of_pixels[0], of_pixels[pixels - 1]);
 }
 
 }  // namespace
@@ -67,17 +67,13 @@ SAILENV_KERNEL(scale_light)
     const f8 more{offsets[0], offsets[1], offsets[2], 0.0f,
                   offsets[0], offsets[1], offsets[2], 0.0f};
     sailenv::parallel_for(threads, height, TILE_ROWS, [&](int64_t first, int64_t last, int64_t) {
-        for (int64_t at = first * width; at < last * width; at += 2) {
-            const int64_t pixels = at + 1 < last * width ? 2 : 1;
-            f8 light = two_pixels(radiance + 4 * at, pixels) * times;
+        const auto finish = [times, more, share](int64_t at, int64_t pixels,
+                                                 const uint16_t* given) {
+            f8 light = load_halves(given) * times;
             if (share != nullptr) light = light * for_two(share + at, pixels);
-            const i8 halves = to_half(clamp8(light + more, 0.0f, GREATEST));
-            for (int64_t k = 0; k < pixels; k++) {
-                uint16_t* pixel = out + 4 * (at + k);
-                for (int c = 0; c < 3; c++) pixel[c] = static_cast<uint16_t>(halves[4 * k + c]);
-                pixel[3] = radiance[4 * (at + k) + 3];
-            }
-        }
+            return to_half(clamp8(light + more, 0.0f, GREATEST));
+        };
+        sailenv::finish_pairs(radiance, out, first * width, last * width, finish);
     });
     return sailenv::STATUS_OK;
 }

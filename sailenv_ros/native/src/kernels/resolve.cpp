@@ -56,8 +56,17 @@ SAILENV_KERNEL(resolve)
             pixel[3] = keeps_share != 0 ? samples[4 * (v * width + u) + 3] : uint16_t{0};
         }
     };
+    const bool darkens = times == 1 && visibility != nullptr && keeps_share != 0;
     sailenv::parallel_for(threads, height, TILE_ROWS, [&](int64_t first, int64_t last, int64_t) {
-        for (int64_t v = first; v < last; v++) resolve_row(v);
+        for (int64_t v = first; v < last; v++) {
+            for (int64_t u = 0; darkens && u < width; u += sailenv::DARKENED) {
+                const int64_t at = v * width + u;
+                const int64_t count = u + sailenv::DARKENED < width ? sailenv::DARKENED : width - u;
+                sailenv::darken(ambient, v, u, count, surface + 2 * at, samples + 4 * at,
+                                out + 4 * at);
+            }
+            if (!darkens) resolve_row(v);
+        }
     });
     return sailenv::STATUS_OK;
 }

@@ -3,6 +3,7 @@
 #include "../abi.h"
 #include "../threads.h"
 #include "lanes.h"
+#include "pixel_pairs.h"
 #include "scratch.h"
 
 namespace {
@@ -102,6 +103,35 @@ LANES_INLINE uint64_t random_bits(uint64_t seed, uint64_t number) {
     return z ^ (z >> 31);
 }
 
+struct Noise {
+    const float* normal;  // (65536,); null for none
+    uint64_t seed;
+    float per_light, read;  // variance of light x: x per_light + read
+};
+
+// The light of two pixels side by side.
+LANES_INLINE f8 with_noise(const Noise& noise, int64_t at, f8 light) {
+    if (noise.normal == nullptr) return light;
+    const uint64_t a = random_bits(noise.seed, static_cast<uint64_t>(at)),
+                   b = random_bits(noise.seed, static_cast<uint64_t>(at + 1));
+    const auto number = [&noise](uint64_t drawn, int place) {
+        return noise.normal[drawn >> (16 * place) & 0xffff];
+    };
+    const f8 numbers = {number(a, 0), number(a, 1), number(a, 2), 0.0f,
+                        number(b, 0), number(b, 1), number(b, 2), 0.0f};
+    return light + sqrt8(light * noise.per_light + noise.read) * numbers;
+}
+
+// Pixels with the light that is spread to them.
+f8 with_halos(const Level& level, float share, int64_t width, int64_t at, int64_t pixels,
+              f8 light) {
+    for (int64_t k = 0; k < pixels; k++) {
+        const f4 halo = doubled(level, (at + k) / width, (at + k) % width) * (1.0f / LEVELS);
+        for (int c = 0; c < 4; c++) light[4 * k + c] += share * (halo[c] - light[4 * k + c]);
+    }
+    return light;
+}
+
 }  // namespace
 
 // `radiance` and `out` are (height, width, 4); `normal` (65536,) may be null: no noise.
@@ -157,41 +187,17 @@ SAILENV_KERNEL(gather_light)
                                   });
         }
     }
-    const float share = static_cast<float>(bloom), per_light = static_cast<float>(shot),
-                always = static_cast<float>(read), part = 1.0f / LEVELS;
+    const Noise noise{normal, static_cast<uint64_t>(seed), static_cast<float>(shot),
+                      static_cast<float>(read)};
+    const float share = static_cast<float>(bloom);
     sailenv::parallel_for(threads, height, TILE_ROWS, [&](int64_t first, int64_t last, int64_t) {
-        for (int64_t at = first * width; at < last * width; at += 2) {
-            // Two pixels at a time.
-            const int64_t pixels = at + 1 < last * width ? 2 : 1;
-            alignas(32) float both[8] = {};
-            for (int64_t k = 0; k < pixels; k++) {
-                f4 light = load_four(radiance + 4 * (at + k));
-                if (blooms) {
-                    const f4 halo = doubled(levels[0], (at + k) / width, (at + k) % width);
-                    light = light + share * (halo * part - light);
-                }
-                memcpy(both + 4 * k, &light, sizeof light);
-            }
-            f8 light = load(both);
-            if (normal != nullptr) {
-                alignas(32) float numbers[8] = {};
-                for (int64_t k = 0; k < pixels; k++) {
-                    const uint64_t drawn =
-                        random_bits(static_cast<uint64_t>(seed), static_cast<uint64_t>(at + k));
-                    for (int c = 0; c < 3; c++) {
-                        numbers[4 * k + c] = normal[drawn >> (16 * c) & 0xffff];
-                    }
-                }
-                const f8 spread = sqrt8(light * per_light + always);
-                light = light + spread * load(numbers);
-            }
-            const i8 halves = to_half(clamp8(light, 0.0f, GREATEST));
-            for (int64_t k = 0; k < pixels; k++) {
-                uint16_t* pixel = out + 4 * (at + k);
-                for (int c = 0; c < 3; c++) pixel[c] = static_cast<uint16_t>(halves[4 * k + c]);
-                pixel[3] = radiance[4 * (at + k) + 3];
-            }
-        }
+        const auto finish = [&levels, noise, share, blooms, width](int64_t at, int64_t pixels,
+                                                                   const uint16_t* given) {
+            f8 light = load_halves(given);
+            if (blooms) light = with_halos(levels[0], share, width, at, pixels, light);
+            return to_half(clamp8(with_noise(noise, at, light), 0.0f, GREATEST));
+        };
+        sailenv::finish_pairs(radiance, out, first * width, last * width, finish);
     });
     return sailenv::STATUS_OK;
 }
