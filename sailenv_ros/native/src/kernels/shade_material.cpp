@@ -58,34 +58,69 @@ LANES_INLINE void look_up(const uint32_t* const* maps, f8 u, f8 v, i8 size, f8 l
     }
 }
 
-// Multiplies base colours by what colour maps hold: by the mean of up to `most` look-ups along the
-// longer side of what a pixel covers. `bias` chooses finer levels where below 0.
-void multiply_by_maps(Chunk& c, float bias, float most) {
+// Where a chunk's colours are looked up: the first place, the step to the next, how many there are,
+// and the level of detail.
+struct LookUps {
+    alignas(32) float u[CHUNK], v[CHUNK], step_u[CHUNK], step_v[CHUNK], count[CHUNK], level[CHUNK];
+};
+
+LANES_INLINE i8 colour_size(f8 log2) { return truncated(max8(log2, splat(0.0f))); }
+
+// Finds them, and has the first texels of each pixel on their way before any is needed.
+LANES_INLINE void find_look_ups(const Chunk& c, float bias, float most, LookUps& found) {
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 log2 = load(c.colour_log2 + i);
         const i8 mapped = log2 >= 0.0f;
         if (!any(mapped)) continue;
-        const i8 size = truncated(max8(log2, splat(0.0f)));
+        const i8 size = colour_size(log2);
         const Slopes d = uv_slopes(c, i);
         const f8 across = d.ux * d.ux + d.vx * d.vx, down = d.uy * d.uy + d.vy * d.vy;
         const i8 wide = across >= down;
         const f8 longer = wide ? across : down, shorter = wide ? down : across;
         const f8 ratio = sqrt8(longer / max8(shorter, longer * 0.001f + 1e-20f));
         const f8 count = clamp8(floor8(ratio + 0.5f), 1.0f, most), share = 1.0f / count;
-        const f8 along_u = (wide ? d.ux : d.uy) * share, along_v = (wide ? d.vx : d.vy) * share;
-        const f8 level = level_of_detail(along_u, along_v, along_u, along_v, size, bias);
+        const f8 step_u = (wide ? d.ux : d.uy) * share, step_v = (wide ? d.vx : d.vy) * share;
+        const f8 level = level_of_detail(step_u, step_v, step_u, step_v, size, bias);
         const f8 first = 0.5f - 0.5f * count;
-        const f8 u = load(c.u + i) + along_u * first, v = load(c.v + i) + along_v * first;
+        const f8 u = load(c.u + i) + step_u * first, v = load(c.v + i) + step_v * first;
+        store(found.u + i, u);
+        store(found.v + i, v);
+        store(found.step_u + i, step_u);
+        store(found.step_v + i, step_v);
+        store(found.count + i, count);
+        store(found.level + i, level);
+        const Taps taps = texture_taps(u, v, size, truncated(level));
+        for (int k = 0; k < 8; k++) {
+            if (!mapped[k]) continue;
+            __builtin_prefetch(c.colour_texels[i + k] + taps.upper[k]);
+            __builtin_prefetch(c.colour_texels[i + k] + taps.lower[k]);
+        }
+    }
+}
+
+// Multiplies base colours by what colour maps hold: by the mean of up to `most` look-ups along the
+// longer side of what a pixel covers. `bias` chooses finer levels where below 0.
+void multiply_by_maps(Chunk& c, float bias, float most) {
+    LookUps at;
+    find_look_ups(c, bias, most, at);
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        const f8 log2 = load(c.colour_log2 + i);
+        const i8 mapped = log2 >= 0.0f;
+        if (!any(mapped)) continue;
+        const i8 size = colour_size(log2);
+        const f8 u = load(at.u + i), v = load(at.v + i), level = load(at.level + i);
+        const f8 step_u = load(at.step_u + i), step_v = load(at.step_v + i);
+        const f8 count = load(at.count + i);
         alignas(32) float texels[4 * 8] = {};
         i8 wanted = mapped;
         for (float k = 0.0f; any(wanted); k += 1.0f, wanted &= count > k) {
-            look_up(c.colour_texels + i, u + along_u * k, v + along_v * k, size, level, wanted,
+            look_up(c.colour_texels + i, u + step_u * k, v + step_v * k, size, level, wanted,
                     texels);
         }
         Vec3x8 sum;
         f8 alpha;
         transpose4(texels, sum.x, sum.y, sum.z, alpha);
-        const f8 unit = share * (1.0f / 255.0f);
+        const f8 unit = (1.0f / count) * (1.0f / 255.0f);
         c.base.set(i, c.base.at(i) * where(mapped, sum * unit, splat(vec3(1.0f, 1.0f, 1.0f))));
     }
 }
