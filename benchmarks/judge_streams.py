@@ -49,8 +49,8 @@ WITHIN = 1_000
 
 APPEARS = "bathtub"
 
-SIGNALS = ("red", "green", "blue", "red / blue", "floor", APPEARS)
-"""Mean colours of a picture, and shares of its pixels that are of a category."""
+SIGNALS = ("red", "green", "blue", "red / blue", APPEARS)
+"""Mean colours of a picture, and the share of its pixels that are of the category."""
 
 CLOCK, FRAMES = 32, 100_000
 DELTA = 0.002 / (FRAMES / CLOCK)
@@ -280,18 +280,17 @@ def _signals(course: dict[str, Any], seed: int, begin: int, end: int) -> dict[st
         path = Path(folder) / "course.yaml"
         path.write_text(yaml.safe_dump(course))
         with streams.open(path, seed=seed, views=("rgb", "category")) as stream:
-            told = [(frame["rgb"].mean(axis=(0, 1)), _shares(frame)) for frame in stream[begin:end]]
+            told = [(frame["rgb"].mean(axis=(0, 1)), _share(frame)) for frame in stream[begin:end]]
     red, green, blue = np.array([colours for colours, _ in told]).T / 255.0
-    values = red, green, blue, red / blue / 4.0, *np.array([shares for _, shares in told]).T
+    values = red, green, blue, red / blue / 4.0, np.array([share for _, share in told])
     return dict(zip(SIGNALS, values, strict=True))
 
 
-def _shares(frame: streams.StreamFrame) -> list[float]:
-    """Return the shares of pixels that are floor, and of the category that appears."""
+def _share(frame: streams.StreamFrame) -> float:
+    """Return the share of pixels that are of the category that appears."""
     info = frame.frame.info
     assert info is not None
-    ids = [info.categories.named(name).id for name in ("floor", APPEARS)]
-    return [float((frame["category"] == one).mean()) for one in ids]
+    return float((frame["category"] == info.categories.named(APPEARS).id).mean())
 
 
 def _changes(values: np.ndarray) -> list[int]:

@@ -157,6 +157,10 @@ void apply_detail_maps(const Shading& s, Chunk& c) {
         const i8 size = truncated(load(c.detail_log2 + i));
         const f8 level = level_of_detail(d.ux, d.vx, d.uy, d.vy, size, 0.5f);
         store_taps(taps, i, texture_taps(load(c.u + i), load(c.v + i), size, truncated(level)));
+        for (int32_t at = i; at < i + 8; at++) {
+            __builtin_prefetch(c.detail_texels[at] + taps.upper[at]);
+            __builtin_prefetch(c.detail_texels[at] + taps.lower[at]);
+        }
     }
     const RaySteps everywhere = ray_steps(s.lens, s.world_from_camera);
     alignas(32) float texels[4 * 8];
