@@ -43,6 +43,12 @@ MAX_SPEED_M_S = 10.0
 """No behaviour drives a body faster: in one step it then covers less than half a thin wall."""
 
 
+# Made once: of what joints do, a state is asked for in each step.
+_UNIT_INERTIA, _NO_PLANES, _IN_ORIGIN = np.ones(3), np.zeros((0, 4)), np.zeros(3)
+for _shared in (_UNIT_INERTIA, _NO_PLANES, _IN_ORIGIN):
+    _shared.flags.writeable = False
+
+
 class BehaviourParameters(BaseModel):
     """Base of every behaviour's parameters: unknown keys are errors, numbers are finite."""
 
@@ -117,9 +123,9 @@ class BodyState:
     linear_velocity: NDArray[np.float64]
     angular_velocity: NDArray[np.float64]
     mass_kg: float
-    inertia_kg_m2: NDArray[np.float64] = field(default_factory=lambda: np.ones(3))
-    frustum_planes: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 4)))
-    centre_of_mass_m: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    inertia_kg_m2: NDArray[np.float64] = field(default_factory=lambda: _UNIT_INERTIA)
+    frustum_planes: NDArray[np.float64] = field(default_factory=lambda: _NO_PLANES)
+    centre_of_mass_m: NDArray[np.float64] = field(default_factory=lambda: _IN_ORIGIN)
     joint_position: float = 0.0
     joint_velocity: float = 0.0
     joint_limits: tuple[float, float] = (0.0, 0.0)

@@ -71,8 +71,14 @@ def torques(orientations: Vector, inertias_kg_m2: Vector, twists: Vector) -> Vec
 def _rotated(orientations: Vector, values: Vector) -> Vector:
     """Turn rows (N, 3) by unit quaternions (N, 4): v + 2 w (u × v) + 2 u × (u × v)."""
     axis, w = orientations[:, :3], orientations[:, 3:]
-    once = np.cross(axis, values)
-    return np.asarray(values + 2.0 * (w * once + np.cross(axis, once)))
+    once = _crosses(axis, values)
+    return np.asarray(values + 2.0 * (w * once + _crosses(axis, once)))
+
+
+def _crosses(first: Vector, second: Vector) -> Vector:
+    """Return the vector products of rows (N, 3): those of `np.cross`, which takes twice as long."""
+    (a, b, c), (x, y, z) = first.T, second.T
+    return np.stack((b * z - c * y, c * x - a * z, a * y - b * x), axis=1)
 
 
 def limited(values: Vector, most: float) -> Vector:

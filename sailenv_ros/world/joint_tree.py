@@ -238,18 +238,18 @@ class JointTree:
 
     def after_step(self) -> bool:
         """Hold joints within their limits, and what friction holds; tell if something moved."""
-        moved = False
+        moved, rolled, last = False, self._rolled, self._last
         read, body = self._client.getJointState, self.bullet_id
         for number, engine_link, (low, high) in self._moving:
-            if number in self._rolled:
-                angle, speed = self._rolled[number]
-                self._rolled[number] = angle + speed / STEPS_PER_SECOND, speed
+            if number in rolled:
+                angle, speed = rolled[number]
+                rolled[number] = angle + speed / STEPS_PER_SECOND, speed
                 moved |= speed != 0.0
                 continue
             position, velocity = read(body, engine_link)[:2]
-            before, speed = self._last[number]
+            before, speed = last[number]
             if position == before and velocity == speed:
-                self._last[number] = position, velocity  # of a zero the sign may be another
+                last[number] = position, velocity  # of a zero the sign may be another
                 continue
             self._require_finite(number, position, velocity)
             free = number not in self._driven and number not in self._motors
@@ -260,7 +260,7 @@ class JointTree:
                 position, velocity = min(max(position, low), high), 0.0
                 self.set(number, position)
             moved |= position != before
-            self._last[number] = (position, velocity)
+            last[number] = (position, velocity)
             if number in self._lawful:
                 self._obey(number, position, velocity)
         if self._was_driven or self._driven:
