@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.dataset.formats.images import scaled_depth
 from sailenv_ros.dataset.formats.tar_files import Content
 from sailenv_ros.frame.pictures.codecs import decode_picture, encode_png
+from sailenv_ros.types.picture_settings import MAX_SIZE_PX
 from sailenv_ros.types.views import VIEWS, view_spec
 
 __all__ = [
@@ -42,6 +44,9 @@ COMPRESSIONS: Mapping[Compression, str] = MappingProxyType(
 ENDINGS = ("png", "npy", "npy.zst", "npz")
 
 ZSTD_LEVEL = 1
+
+_HEAD_BYTES = 1024
+"""More than the head of an array file takes."""
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 
@@ -106,11 +111,14 @@ def decoded(view: str, ending: str, data: bytes) -> NDArray[Any]:
         values = _from_npy(view, data)
     elif ending == "npy.zst":
         try:
-            values = _from_npy(view, zstandard.ZstdDecompressor().decompress(data))
+            _require_bounded(view, zstandard.frame_content_size(data))
+            unpacking = zstandard.ZstdDecompressor()
+            values = _from_npy(view, unpacking.decompress(data, max_output_size=_most_bytes(view)))
         except zstandard.ZstdError as problem:
             raise ValueError(f"the view {view} is no whole Zstandard file: {problem}") from None
     else:
         with np.load(io.BytesIO(data), allow_pickle=False) as file:
+            _require_bounded(view, file.zip.getinfo(f"{view}.npy").file_size)
             values = file[view]
     if values.dtype == np.float16:
         return values.astype(VIEWS[view].dtype)
@@ -123,6 +131,18 @@ def as_kept(view: str, values: NDArray[Any], kind: Compression | None) -> NDArra
         return values
     ending, contents = encoded(view, values, "float16" if kind == "float16_zstd" else kind)
     return decoded(view, ending, b"".join(bytes(one) for one in contents))
+
+
+def _most_bytes(view: str) -> int:
+    """Return how many bytes an array file of a view has at most, as large as cameras can be."""
+    spec = VIEWS[view]
+    return math.prod(spec.shape(MAX_SIZE_PX, MAX_SIZE_PX)) * spec.dtype.itemsize + _HEAD_BYTES
+
+
+def _require_bounded(view: str, size: int) -> None:
+    """Refuse what would unpack to more than any picture is, before it takes memory."""
+    if size > _most_bytes(view):
+        raise ValueError(f"the view {view} unpacks to {size} bytes, more than any picture has")
 
 
 def _npz(view: str, values: NDArray[Any]) -> bytes:

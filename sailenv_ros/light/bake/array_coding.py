@@ -8,6 +8,8 @@ differ from green in that; bytes of like weight lie together and are deflated.
 from __future__ import annotations
 
 import json
+import math
+import operator
 import zlib
 from typing import Any
 
@@ -21,6 +23,9 @@ LEVEL, QUICK_LEVEL = 6, 1
 
 DROPPED_BITS = 2
 """Last bits of half-precision light that are left out: they are below the noise of its rays."""
+
+MOST_BYTES = 2**30
+"""Of an array: what a stranger gives may claim any size, and deflate zeros to little."""
 
 _INTEGERS = {1: np.uint8, 2: np.uint16, 4: np.uint32, 8: np.uint64}
 _SIGNED = {1: np.int8, 2: np.int16, 4: np.int32, 8: np.int64}
@@ -60,13 +65,13 @@ def decoded(data: NDArray[np.uint8]) -> NDArray[Any]:
     Raises
     ------
     ValueError
-        If the bytes are none of an array.
+        If the bytes are none of an array of numbers, or one of more than `MOST_BYTES`.
     """
     told, _, packed = data.tobytes().partition(b"\n")
     try:
-        name, shape = json.loads(told)
-        kind = np.dtype(name)
-        planes = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(kind.itemsize, -1)
+        kind, shape = _told(told)
+        planes = np.frombuffer(_inflated(packed, math.prod(shape) * kind.itemsize), np.uint8)
+        planes = planes.reshape(kind.itemsize, -1)
         small = np.ascontiguousarray(planes.T).view(_INTEGERS[kind.itemsize]).reshape(_rows(shape))
     except (ValueError, TypeError, KeyError, zlib.error) as problem:
         raise ValueError(f"it is no coded array ({problem})") from problem
@@ -74,6 +79,26 @@ def decoded(data: NDArray[np.uint8]) -> NDArray[Any]:
     steps = (small >> one) ^ (~(small & one) + one)
     array: NDArray[Any] = _sums(steps).view(kind).reshape(shape)
     return array
+
+
+def _told(line: bytes) -> tuple[np.dtype[Any], tuple[int, ...]]:
+    """Return the type and the shape that a line tells of."""
+    name, given = json.loads(line)
+    kind, shape = np.dtype(name), tuple(operator.index(size) for size in given)
+    if kind.kind not in "fiub" or min(shape, default=0) < 0:
+        raise ValueError(f"{kind} of shape {shape} are no numbers")
+    if math.prod(shape) * kind.itemsize > MOST_BYTES:
+        raise ValueError(f"shape {shape} is more than {MOST_BYTES // 2**20} MiB")
+    return kind, shape
+
+
+def _inflated(packed: bytes, size: int) -> bytes:
+    """Return so many bytes, without ever holding more."""
+    inflating = zlib.decompressobj()
+    found = inflating.decompress(packed, size + 1)
+    if len(found) != size or not inflating.eof:
+        raise ValueError(f"it does not hold {size} bytes")
+    return found
 
 
 def _deflated(data: bytes, level: int) -> bytes:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import io
+import tracemalloc
+import zipfile
 from pathlib import Path
 from typing import Any, get_args
 
 import numpy as np
 import pytest
+import zstandard
 
 from sailenv_ros import dataset
 from sailenv_ros.dataset import RecipeError, engine_of, load_job, make_dataset, verify_dataset
@@ -21,6 +24,7 @@ from sailenv_ros.dataset.formats.view_files import (
     encoded,
 )
 from sailenv_ros.dataset.showing import save_sheet
+from sailenv_ros.types.picture_settings import MAX_SIZE_PX
 from sailenv_ros.types.views import RENDERED_VIEWS, VIEWS
 from tests.unit.dataset.conftest import written_recipe
 
@@ -78,6 +82,29 @@ def test_a_file_that_is_damaged_is_refused() -> None:
     _, (data,) = encoded("depth", values_of("depth"), "zstd")
     with pytest.raises(ValueError, match="depth"):
         decoded("depth", "npy.zst", bytes(data)[:-9])
+
+
+@pytest.mark.parametrize("ending", ["npy.zst", "npz"])
+def test_a_file_that_unpacks_to_more_than_any_picture_is_refused(ending: str) -> None:
+    """Before it takes memory; a frame that does not tell its size, too."""
+    zeros = bytes(MAX_SIZE_PX * MAX_SIZE_PX * 4 + 2048)
+    if ending == "npz":
+        file = io.BytesIO()
+        with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("depth.npy", zeros)
+        files = [file.getvalue()]
+    else:
+        packing = zstandard.ZstdCompressor()
+        untold = zstandard.ZstdCompressor(write_content_size=False)
+        files = [packing.compress(zeros), untold.compress(zeros)]
+    for data in files:
+        tracemalloc.start()
+        try:
+            with pytest.raises(ValueError, match="depth"):
+                decoded("depth", ending, data)
+            assert tracemalloc.get_traced_memory()[1] < MAX_SIZE_PX * MAX_SIZE_PX * 4 + 2**20
+        finally:
+            tracemalloc.stop()
 
 
 def test_a_data_set_is_read_again_and_is_smaller(tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+import zlib
 from typing import Any
 
 import numpy as np
@@ -29,6 +31,17 @@ def test_every_array_comes_back(array: NDArray[Any]) -> None:
     assert same.tobytes() == array.tobytes()
 
 
+def test_what_inflates_to_more_than_it_tells_takes_no_memory() -> None:
+    bomb = b'["<f2", [4]]\n' + zlib.compress(bytes(10**8))
+    tracemalloc.start()
+    try:
+        with pytest.raises(ValueError, match="no coded array"):
+            decoded(np.frombuffer(bomb, np.uint8))
+        assert tracemalloc.get_traced_memory()[1] < 10**6
+    finally:
+        tracemalloc.stop()
+
+
 def test_light_is_rounded_to_the_nearest_of_nine_bits() -> None:
     """At most 0.2 % off where half precision is relative, and never infinite."""
     every = np.arange(0x7C00, dtype=np.uint16).view(np.float16)
@@ -48,7 +61,21 @@ def test_smooth_light_takes_a_quarter() -> None:
     assert len(coded(light)) < light.nbytes / 4
 
 
-@pytest.mark.parametrize("data", [b"", b"[]\n", b'["<f2", [4]]\nno', b'["<f2", [4]]\n'])
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"[]\n",
+        b'["<f2", [4]]\nno',
+        b'["<f2", [4]]\n',
+        b'["|O", [4]]\n' + zlib.compress(bytes(32)),
+        b'["<f2", [-4, -1]]\n' + zlib.compress(bytes(8)),
+        b'["<f2", [1.5]]\n' + zlib.compress(bytes(2)),
+        b'["<f2", [4]]\n' + zlib.compress(bytes(7)),
+        b'["<f2", [4]]\n' + zlib.compress(bytes(10**7)),
+        b'["<f8", [1000000, 1000000]]\n' + zlib.compress(bytes(8)),
+    ],
+)
 def test_other_bytes_are_refused(data: bytes) -> None:
     with pytest.raises(ValueError, match="no coded array"):
         decoded(np.frombuffer(data, np.uint8))
