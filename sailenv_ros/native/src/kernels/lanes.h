@@ -200,6 +200,15 @@ LANES_INLINE f8 load_halves(const uint16_t* p) {
     return from_half(h);
 #endif
 }
+// Two numbers from each of two places. Of four scalars the compiler makes four loads.
+LANES_INLINE f4 two_pairs(const float* a, const float* b) {
+#if defined(__SSE2__)
+    const __m128 first = _mm_loadl_pi(_mm_setzero_ps(), reinterpret_cast<const __m64*>(a));
+    return (f4)_mm_loadh_pi(first, reinterpret_cast<const __m64*>(b));
+#else
+    return f4{a[0], a[1], b[0], b[1]};
+#endif
+}
 // Eight bytes that lie side by side.
 LANES_INLINE f8 load_bytes(const void* p) {
 #if defined(__AVX2__)

@@ -17,18 +17,14 @@ f8 lit_share(const float* inverse_depth, int32_t size, f8 x, f8 y, f8 near) {
     const f8 across = tx - to_float(ix), down = ty - to_float(iy);
     const int32_t stride = size + ROW_PADDING;
     const i8 at = iy * stride + ix;
-    alignas(32) float corner[4][8];
+    alignas(32) float texels[4 * 8];
     for (int k = 0; k < 8; k++) {
         const float* p = inverse_depth + at[k];
-        corner[0][k] = p[0];
-        corner[1][k] = p[1];
-        corner[2][k] = p[stride];
-        corner[3][k] = p[stride + 1];
+        *reinterpret_cast<f4_any*>(texels + 4 * k) = two_pairs(p, p + stride);
     }
-    f8 lit[4];
-    for (int k = 0; k < 4; k++) {
-        lit[k] = near >= load(corner[k]) ? splat(1.0f) : splat(0.0f);
-    }
+    f8 corner[4], lit[4];
+    transpose4(texels, corner[0], corner[1], corner[2], corner[3]);
+    for (int k = 0; k < 4; k++) lit[k] = near >= corner[k] ? splat(1.0f) : splat(0.0f);
     const f8 upper = lit[0] + (lit[1] - lit[0]) * across;
     const f8 lower = lit[2] + (lit[3] - lit[2]) * across;
     return upper + (lower - upper) * down;
