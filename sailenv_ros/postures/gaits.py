@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
+from sailenv_ros.postures.animal_bearing import tail_habit
 from sailenv_ros.postures.animal_figure import animal_figure_of
 from sailenv_ros.postures.figure import figure_of
 from sailenv_ros.postures.footsteps import Moment, Stride
 from sailenv_ros.postures.four_legs import four_legged_posture
+from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.types.model import Asset
@@ -22,7 +25,7 @@ _RADIUS = 0.172
 
 class _PostureFunction(Protocol):
     def __call__(
-        self, rig: Rig, moment: Moment, time_s: float, *, seed: int, look_deg: tuple[float, float]
+        self, rig: Rig, moment: Moment, time_s: float, *, seed: int, look: Look
     ) -> Posture:
         """Return the posture of a body on its way; see `walking_posture`."""
 
@@ -67,5 +70,5 @@ def gait_of(asset: Asset) -> Gait:
         height_m=animal.height_m,
         eyes_m=float(asset.rig.head("head")[2]),
         radius=animal.radius_m / animal.height_m,
-        posture=four_legged_posture,
+        posture=partial(four_legged_posture, tail=tail_habit(asset.category)),
     )

@@ -11,6 +11,7 @@ from sailenv_ros.postures.easing import smoother_step
 from sailenv_ros.postures.figure import Figure, figure_of
 from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.limbs import bend_arm, bend_leg, two_bones
+from sailenv_ros.postures.look import AHEAD, Look
 from sailenv_ros.postures.skeleton import Posture, joint_frames, turn_about
 from sailenv_ros.postures.standing import SIDES, breathing, hands_at_ease, looking
 from sailenv_ros.postures.walking import walking_posture
@@ -61,7 +62,7 @@ def sitting_posture(
     time_s: float,
     *,
     seed: int = 0,
-    look_deg: tuple[float, float] = (0.0, 0.0),
+    look: Look = AHEAD,
 ) -> Posture:
     """Return the posture of one who sits down: 0 stands, 1 sits.
 
@@ -72,7 +73,7 @@ def sitting_posture(
     """
     figure = figure_of(rig)
     eased = smoother_step(share)
-    standing = walking_posture(rig, moment, time_s, seed=seed, look_deg=look_deg)
+    standing = walking_posture(rig, moment, time_s, seed=seed, look=look)
     if eased <= 0.0:
         return standing
     start = standing.root_m - standing.turns["root"] @ (rig.heads[0] - figure.hips)
@@ -103,7 +104,7 @@ def sitting_posture(
     turns["spine03"] = turn_about("y", 0.85 * lean)
     turns["spine01"] = chest
     turns |= _hands_on_thighs(rig, Posture(root_m=root, turns=turns), chest, eased, standing)
-    turns |= looking(turn_about("y", 0.25 * lean), look_deg[0], look_deg[1])
+    turns |= looking(turn_about("y", 0.25 * lean), look)
     turns |= hands_at_ease(rig, turns)
     return Posture(root_m=root, turns=turns)
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.postures.limbs import bend_arm
+from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.skeleton import turn_about
 from sailenv_ros.types.rig import Rig
 
@@ -84,10 +85,9 @@ def breathing(time_s: float, seed: int) -> float:
     return float(np.sin(2.0 * np.pi * (time_s / 3.7 + 0.37 * seed)))
 
 
-def looking(chest: Doubles, yaw_deg: float, pitch_deg: float) -> dict[str, Doubles]:
-    """Return the turns of neck and head that look sideways and down, from the chest [deg]."""
-    yaw = float(np.clip(yaw_deg, -_MOST_LOOK_DEG[0], _MOST_LOOK_DEG[0]))
-    pitch = float(np.clip(pitch_deg, -_MOST_LOOK_DEG[1], _MOST_LOOK_DEG[1]))
+def looking(chest: Doubles, look: Look) -> dict[str, Doubles]:
+    """Return the turns of neck and head that look somewhere, from the chest."""
+    yaw, pitch = look.within(_MOST_LOOK_DEG)
 
     def share(part: float) -> Doubles:
         return chest @ turn_about("z", part * yaw) @ turn_about("y", part * pitch)

@@ -6,6 +6,7 @@ Knows the crowd around, and not the engine; what is done where a way ends is tol
 from __future__ import annotations
 
 import math
+import zlib
 from dataclasses import replace
 
 import numpy as np
@@ -28,6 +29,7 @@ from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Actor
+from sailenv_ros.world.attention import Attention
 from sailenv_ros.world.crowd import Crowd, body_size
 
 __all__ = ["Place", "Stepper", "yaw_of"]
@@ -73,7 +75,10 @@ class Stepper:
         self._gait = gait_of(asset)
         self.crowd: Crowd | None = None
         self.problem = ""
-        self._looks_at = ""
+        self._seed = zlib.crc32(name.encode()) % 97
+        eyes_m = self._gait.eyes_m * scale
+        on_four = self._actor.rig.legs == 4
+        self._attention = Attention(name, self._seed, eyes_m, by_itself=on_four)
 
     @property
     def _radius_m(self) -> float:
@@ -98,7 +103,7 @@ class Stepper:
         self._swings = 1.0, 1.0
         self._space: FreeSpace | None = None
         self._goal: tuple[Place, float | None] | None = None
-        self._looks_at = ""
+        self._attention.forget()
         self.matrix = self._matrix_of_moment()
 
     def _feet_at(self, matrix: Doubles) -> tuple[FootPrint, ...]:
@@ -147,7 +152,7 @@ class Stepper:
         self._way, self._way_s, self._waited_s = way, 0.0, 0.0
         # The map that the way was found in: a new one at each step would cost more than the walk.
         self._space = None if self.crowd is None else self.crowd.free_space(self._size)
-        self._looks_at = ""
+        self._attention.target = ""
         return True
 
     def _walk_on(self) -> None:

@@ -228,7 +228,8 @@ def ways_to_lie(actor: Actor, crowd: Crowd, name: str) -> list[Lying]:
             seat = lane.seat(edge, hips_m)
             if seat is not None and seat.height_m - actor.floor_m <= highest:
                 found.append(Lying(actor, lane, _perch(actor, seat), hips_m))
-    x, y, _ = crowd.people.get(actor.name, (0.0, 0.0, 0.0))
+    own = crowd.people.get(actor.name)
+    x, y = (0.0, 0.0) if own is None else (own.x, own.y)
     return sorted(found, key=lambda way: np.hypot(way.feet[0] - x, way.feet[1] - y))
 
 

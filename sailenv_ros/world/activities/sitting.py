@@ -75,7 +75,7 @@ class Sitting(SpotActivity):
         return sitting_posture(
             *(self._rig, now.moment, self._seat, min(self._done_s / SIT_S, 1.0), now.time_s),
             seed=now.seed,
-            look_deg=now.look_deg,
+            look=now.look,
         )
 
 
