@@ -24,6 +24,9 @@ _GLANCE_S = 2.6
 _SWAY_DEG, _SWAY_HZ = 13.0, 0.45
 """How far, and how often, the tip of a tail sways that tells nothing [deg], [Hz]."""
 
+_UPRIGHT_DEG, _ROUND_DEG = 94.0, 170.0
+"""Of a tail that has no room behind: of one who stands, and of one who rests [deg]."""
+
 _STEEPEST = 0.8
 """Sine of the steepest slope on which a tail goes down to the floor."""
 
@@ -131,6 +134,7 @@ def animal_tail(
     habit: TailHabit,
     gladness: float,
     rests: float,
+    room: float,
 ) -> dict[str, Doubles]:
     """Return the turns of a tail: it sways, it wags, and it lies on the floor behind who rests.
 
@@ -147,6 +151,8 @@ def animal_tail(
         0 to 1.
     rests : float
         How far the animal has sat or lain down, 0 to 1.
+    room : float
+        Share of the room that it has to swing; without, it is held up, or lies round the body.
     """
     tail, count = _tail_of(rig), len(_tail_of(rig).names)
     legs_m = float(animal_figure_of(rig).legs_m.mean())
@@ -154,6 +160,7 @@ def animal_tail(
     tilt = float(np.degrees(np.arctan2(-pelvis[2, 0], pelvis[0, 0])))
     mean = float(tail.rises_deg[:4].mean())
     raised = gladness * max(habit.glad_up_deg - mean, 0.0)
+    curl = habit.curl_deg + (1.0 - room) * max(_ROUND_DEG - habit.curl_deg, 0.0)
     phase = 2.0 * np.pi * time_s * habit.wag_hz / np.sqrt(legs_m)
     side = 1.0 if seed % 2 else -1.0
     above_m = height_m
@@ -162,6 +169,7 @@ def animal_tail(
     for number, name in enumerate(tail.names):
         tip = (number + 1) / count
         carried = float(tail.rises_deg[number]) + tilt + raised * min(1.0, 0.4 + 0.3 * number)
+        carried += (1.0 - room**2) * min(1.0, 0.8 + 0.2 * number) * (_UPRIGHT_DEG - carried)
         # Ever less steeply down to the floor.
         slope = float(np.clip((above_m - thick_m) / (2.2 * tail.bone_m), -0.3, _STEEPEST))
         above_m -= slope * tail.bone_m
@@ -174,7 +182,8 @@ def animal_tail(
         wag = habit.wag_deg * (habit.base_share + (1.0 - habit.base_share) * tip**2)
         wag *= float(np.sin(phase + 0.29 * seed - habit.lag * number))
         aside = (1.0 - gladness) * sway + gladness * wag
-        aside += rests * (1.0 - 0.5 * gladness) * side * habit.curl_deg * max(tip - 0.15, 0.0)
+        aside *= 0.35 + 0.65 * room
+        aside += rests * (1.0 - 0.5 * gladness * room) * side * curl * max(tip - 0.15, 0.0)
         turns[name] = (
             heading
             @ turn_about("y", rise)

@@ -134,6 +134,7 @@ def four_legged_posture(
         habit=tail,
         gladness=look.gladness,
         rests=max(sits, lain),
+        room=moment.swing_room,
     )
     return Posture(root_m=root, turns=turns)
 

@@ -19,8 +19,11 @@ from sailenv_ros.types.rig import Rig
 
 __all__ = ["Gait", "gait_of"]
 
-_RADIUS = 0.172
-"""Of a person, as a share of the height."""
+_RADIUS, _SWING = 0.172, 0.19
+"""Of a person, and what arms need beside it to swing, as shares of the height."""
+
+_LEAST_SWING = 0.15
+"""Share of their swing that arms have beside furniture: hands come before the cylinder."""
 
 
 class _PostureFunction(Protocol):
@@ -41,6 +44,10 @@ class Gait:
         Of the body, and of its eyes.
     radius : float
         Of the cylinder that it turns in, over the height.
+    swing_m : float
+        Room around it in which arms, or a tail, swing as they like.
+    least_swing : float
+        Share of their swing that they have without it.
     posture : callable
         As `walking_posture`.
     """
@@ -49,6 +56,8 @@ class Gait:
     height_m: float
     eyes_m: float
     radius: float
+    swing_m: float
+    least_swing: float
     posture: _PostureFunction
 
 
@@ -62,6 +71,8 @@ def gait_of(asset: Asset) -> Gait:
             height_m=figure.height_m * 1.12,
             eyes_m=figure.height_m,
             radius=_RADIUS,
+            swing_m=_SWING * figure.height_m * 1.12,
+            least_swing=_LEAST_SWING,
             posture=walking_posture,
         )
     animal = animal_figure_of(asset.rig)
@@ -70,5 +81,7 @@ def gait_of(asset: Asset) -> Gait:
         height_m=animal.height_m,
         eyes_m=float(asset.rig.head("head")[2]),
         radius=animal.radius_m / animal.height_m,
+        swing_m=animal.tail_m,
+        least_swing=0.0,
         posture=partial(four_legged_posture, tail=tail_habit(asset.category)),
     )

@@ -99,9 +99,9 @@ def walking_posture(
     chest = turn_about("z", twist) @ turn_about("y", 2.5 * vigour + 0.25 * breath)
     turns["spine03"] = turn_about("z", -0.3 * twist) @ turn_about("y", 2.0 * vigour)
     turns["spine01"] = chest
-    arm = 46.0 * moment.arm_swing * float(np.clip(ahead, -1.0, 1.0))
+    arm = 46.0 * moment.swing_room * float(np.clip(ahead, -1.0, 1.0))
     swings_deg = -arm + 0.6 * breath, arm + 0.6 * breath
-    turns |= hanging_arms(rig, chest, swings_deg, spread=0.09 + 0.07 * moment.arm_swing)
+    turns |= hanging_arms(rig, chest, swings_deg, spread=0.09 + 0.07 * moment.swing_room)
     turns |= looking(turn_about("y", 1.0), look)
     turns |= hands_at_ease(rig, turns)
     return Posture(root_m=root, turns=turns)

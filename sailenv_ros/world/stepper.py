@@ -40,10 +40,6 @@ Place = tuple[float, float]
 _BLOCKED_S = 1.2
 """Time for which one waits for another who is in the way [s]."""
 
-_LEAST_SWING, _WIDE = 0.15, 0.18
-"""Share of their swing that arms have beside furniture, and the room for all of it, as a share of
-the height: hands come before the cylinder that ways are found for."""
-
 
 class Stepper:
     """One person, or an animal, on its feet.
@@ -113,7 +109,7 @@ class Stepper:
     def _moment(self) -> Moment:
         if self._way is not None:
             return self._way.at(self._way_s)
-        return moment_of(self._feet)
+        return moment_of(self._feet, self._stride().lead_m)
 
     def _own_moment(self) -> Moment:
         """Return it before the scale."""
@@ -172,20 +168,20 @@ class Stepper:
         self.matrix = self._matrix_of_moment()
 
     def _swing_at(self, moment: Moment) -> float:
-        """Return the share of their swing that arms have room for."""
+        """Return the share of their swing that arms, or a tail, have room for."""
         space = self._space
         if space is None:
             return 1.0
         cell = space.cell_of((moment.x, moment.y))
         room_m = 0.0 if cell is None else float(space.clearance_m[cell])
-        share = _LEAST_SWING + (1.0 - _LEAST_SWING) * room_m / (_WIDE * space.body.height_m)
-        return min(share, 1.0)
+        least = self._gait.least_swing
+        return min(least + (1.0 - least) * room_m / (self._gait.swing_m * self._scale), 1.0)
 
     def _with_swing(self, moment: Moment) -> Moment:
         """Return it with the swing of arms now: from step to step it changes smoothly."""
         before, after = self._swings
         done = 1.0 if self._way is None else smooth_step(moment.share)
-        return replace(moment, arm_swing=before + (after - before) * done)
+        return replace(moment, swing_room=before + (after - before) * done)
 
     def _wait(self, way: Way, number: int) -> None:
         """Stand where a step has ended; go round who stands in the way, or give up."""

@@ -80,7 +80,7 @@ class RestingOnFloor(SpotActivity):
         """Return the steps of the paws to where they are to be for it [m]."""
         stride = animal_figure_of(self._rig).stride.scaled(self._actor.scale)
         prints = tuple((number, self._print(feet, number)) for number in self._order)
-        return Way(start=feet, prints=prints, step_s=stride.step_s)
+        return Way(start=feet, prints=prints, step_s=stride.step_s, lead_m=stride.lead_m)
 
     _order: tuple[int, ...]
 

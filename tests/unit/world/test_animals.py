@@ -99,6 +99,35 @@ def test_an_animal_walks_round_furniture_and_keeps_out_of_it(cat: Asset) -> None
     world.close()
 
 
+def test_a_dog_turns_in_a_circle_of_half_its_length_and_takes_in_its_tail() -> None:
+    asset = AssetLibrary(installed_sources()).get("dog_02")
+    assert asset.rig is not None
+    nose, tail = (float(asset.rig.head(name)[0]) for name in ("nose", "tail01"))
+    assert nose == pytest.approx(-tail)
+    # A closet: too narrow for one that would turn about the middle of its feet.
+    walls = [
+        placed(f"wall {number}", box(f"w{number}", size, "wall"), *at, static=True)
+        for number, (size, at) in enumerate([
+            ((2.4, 0.1, 0.8), (0.0, 0.6)), ((2.4, 0.1, 0.8), (0.0, -0.6)),
+            ((0.1, 1.1, 0.8), (-1.15, 0.0)), ((0.1, 1.1, 0.8), (1.15, 0.0)),
+        ])
+    ]  # fmt: skip
+    world = world_of(placed("rex", asset, -0.55, 0.0), *walls)
+    rex = one(world, "rex")
+    world.step(1)
+    for goal in (0.55, -0.55, 0.55):
+        deepest = 0.0  # in the first one it takes in its tail
+        assert rex.walker.walk_to((goal, 0.0))
+        while rex.walker.activity == "walking":
+            world.step(12)
+            skin = np.abs(skin_of(rex)[:, :2])
+            if rex.walker.activity == "walking":
+                deepest = max(deepest, float((skin - [1.1, 0.55]).max()))
+    assert np.hypot(rex.pose().position_m[0] - 0.55, rex.pose().position_m[1]) < 0.05
+    assert deepest < 0.02
+    world.close()
+
+
 def test_animals_and_people_do_not_walk_through_each_other(dog: Asset) -> None:
     world = world_of(
         placed("rex", dog, -1.5, 0.0),
