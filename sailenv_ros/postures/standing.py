@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,7 +13,7 @@ from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.skeleton import turn_about
 from sailenv_ros.types.rig import Rig
 
-__all__ = ["SIDES", "breathing", "hands_at_ease", "hanging_arms", "looking"]
+__all__ = ["SIDES", "breathing", "dropped_shoulder", "hands_at_ease", "hanging_arms", "looking"]
 
 Doubles = NDArray[np.float64]
 
@@ -31,21 +32,42 @@ def hanging_arms(
     swing_deg: tuple[float, float],
     ease_deg: float = 10.0,
     spread: float = 0.16,
+    out: float = 0.0,
 ) -> dict[str, Doubles]:
     """Return the turns of arms that hang, swung forward by angles, left and right [deg].
 
-    `spread` is the tangent of the angle from which upper arms hang straight down.
+    `spread` is the tangent of the angle from which upper arms hang straight down. Where that is
+    less than the tangent `out` of straight arms needs, lower arms hang outwards, too.
     """
+    spread = max(spread, out)
+    lengths = [
+        float(np.linalg.norm(rig.head(f"{end}.L") - rig.head(f"{begin}.L")))
+        for begin, end in itertools.pairwise(("upperarm01", "lowerarm01", "wrist", "finger3-3"))
+    ]
+    below = lengths[1] + 1.3 * lengths[2]
+    lower_out = max(0.03, (out * (lengths[0] + below) - spread * lengths[0]) / below)
     turns: dict[str, Doubles] = {}
     for (side, sign), swing in zip(SIDES, swing_deg, strict=True):
         angle = np.radians(swing)
         bend = angle + np.radians(ease_deg + 0.6 * max(swing, 0.0))
         upper = np.array([np.sin(angle), spread * sign, -np.cos(angle)])
-        lower = np.array([np.sin(bend), 0.03 * sign, -np.cos(bend)])
+        lower = np.array([np.sin(bend), lower_out * sign, -np.cos(bend)])
         turns |= bend_arm(rig, side, chest, None, upper, lower)
         # Shoulders are raised at rest, where arms are spread.
         turns[f"shoulder01.{side}"] = chest @ turn_about("x", -_DROP_DEG * sign)
     return turns
+
+
+def dropped_shoulder(rig: Rig, side: str) -> Doubles:
+    """Return (3,): where an arm begins that hangs from a chest at rest, body frame [m].
+
+    Parameters
+    ----------
+    side : {'L', 'R'}
+    """
+    carrier, top = rig.head(f"shoulder01.{side}"), rig.head(f"upperarm01.{side}")
+    found: Doubles = carrier + turn_about("x", -_DROP_DEG * dict(SIDES)[side]) @ (top - carrier)
+    return found
 
 
 def hands_at_ease(rig: Rig, turns: dict[str, Doubles]) -> dict[str, Doubles]:

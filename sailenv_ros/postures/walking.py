@@ -101,7 +101,10 @@ def walking_posture(
     turns["spine01"] = chest
     arm = 46.0 * moment.swing_room * float(np.clip(ahead, -1.0, 1.0))
     swings_deg = -arm + 0.6 * breath, arm + 0.6 * breath
-    turns |= hanging_arms(rig, chest, swings_deg, spread=0.09 + 0.07 * moment.swing_room)
+    room = moment.swing_room
+    turns |= hanging_arms(
+        rig, chest, swings_deg, spread=0.09 + 0.07 * room, out=room * rig.arms_out
+    )
     turns |= looking(turn_about("y", 1.0), look)
     turns |= hands_at_ease(rig, turns)
     return Posture(root_m=root, turns=turns)
