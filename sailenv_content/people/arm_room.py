@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_content.people.dressing import PersonPart
-from sailenv_ros.postures.standing import dropped_shoulder
 from sailenv_ros.types.rig import Rig
 
 __all__ = ["arms_out"]
@@ -39,7 +38,6 @@ def arms_out(rig: Rig, parts: Sequence[PersonPart]) -> float:
     )
     upper, lower = (float(np.linalg.norm(b - a)) for a, b in ((shoulder, elbow), (elbow, wrist)))
     hand = 1.3 * float(np.linalg.norm(rig.head("finger3-3.L") - wrist))
-    top = dropped_shoulder(rig, "L")
     is_arm = np.array([_ARM.fullmatch(name) is not None for name in rig.names])
     forearm = rig.joint_of["lowerarm01.L"]
     body, sleeves = [], []
@@ -52,8 +50,8 @@ def arms_out(rig: Rig, parts: Sequence[PersonPart]) -> float:
     way = from_elbow @ along
     thick = np.linalg.norm(from_elbow - way[:, None] * along, axis=1)[way > _WRIST * lower]
     places = np.concatenate(body)
-    below = top[2] - places[:, 2]
+    below = shoulder[2] - places[:, 2]
     near = (below > upper + _RESTS * lower) & (below < upper + lower + hand)
-    near &= np.abs(places[:, 0] - top[0]) < _BESIDE_M
-    wide = places[near, 1] + float(np.median(thick)) + _OFF_M - top[1]
+    near &= np.abs(places[:, 0] - shoulder[0]) < _BESIDE_M
+    wide = places[near, 1] + float(np.median(thick)) + _OFF_M - shoulder[1]
     return float(np.clip((wide / below[near]).max(initial=0.0), 0.0, _MOST))

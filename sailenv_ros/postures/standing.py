@@ -13,7 +13,7 @@ from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.skeleton import turn_about
 from sailenv_ros.types.rig import Rig
 
-__all__ = ["SIDES", "breathing", "dropped_shoulder", "hands_at_ease", "hanging_arms", "looking"]
+__all__ = ["SIDES", "breathing", "hands_at_ease", "hanging_arms", "looking"]
 
 Doubles = NDArray[np.float64]
 
@@ -56,18 +56,6 @@ def hanging_arms(
         # Shoulders are raised at rest, where arms are spread.
         turns[f"shoulder01.{side}"] = chest @ turn_about("x", -_DROP_DEG * sign)
     return turns
-
-
-def dropped_shoulder(rig: Rig, side: str) -> Doubles:
-    """Return (3,): where an arm begins that hangs from a chest at rest, body frame [m].
-
-    Parameters
-    ----------
-    side : {'L', 'R'}
-    """
-    carrier, top = rig.head(f"shoulder01.{side}"), rig.head(f"upperarm01.{side}")
-    found: Doubles = carrier + turn_about("x", -_DROP_DEG * dict(SIDES)[side]) @ (top - carrier)
-    return found
 
 
 def hands_at_ease(rig: Rig, turns: dict[str, Doubles]) -> dict[str, Doubles]:
