@@ -91,7 +91,7 @@ class Lying(SpotActivity):
     def __init__(self, actor: Actor, lane: Lane, seat: Seat, hips_m: float) -> None:
         self._actor, self._lane = actor, lane
         self._hips = lane.head - hips_m * lane.way
-        self._sitting = Sitting(actor, seat)
+        self._sitting = Sitting(actor, seat, lane.heights)
         self.feet, self.yaw, self.piece = self._sitting.feet, self._sitting.yaw, lane.name
         self.takes = tuple(
             (float(x), float(y))
