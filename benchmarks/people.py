@@ -37,6 +37,7 @@ from sailenv_ros.postures.skeleton import joint_frames, skin_matrices
 from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.rays.opaque_models import deformed_model
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.space.free_space import FREE
 from sailenv_ros.types.geometry import look_at
 from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.skin import skin_over
@@ -305,10 +306,12 @@ def walks_in(world: World, seed: int, count: int, name: str) -> Any:
     world.step(1)
     walker = person.walker
     client = world.client
-    start = walker.random_place(rng)
-    if start is None:
+    assert walker.crowd is not None
+    space = walker.crowd.free_space(walker._size)
+    free = np.argwhere(space.cells == FREE)
+    if not len(free):
         return [(False, "there is no free place", 0.0, 0.0, 0.0)]
-    person.put(Pose((*start, 0.0)))
+    person.put(Pose((*space.position_of(*free[rng.integers(len(free))].tolist())[:2], 0.0)))
     still = {body.bullet_id for body in world.bodies if body is not person and body.collides}
     results = []
     for _ in range(count):

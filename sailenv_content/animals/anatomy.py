@@ -1,6 +1,6 @@
 """Bones of a cat or a dog: where its joints are at rest, by a row of numbers.
 
-Lengths are shares of the height of the withers; the body frame lies on the floor between the feet.
+Lengths are shares of the height of the withers. Places are from the floor between the feet.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ def make_animal(name: str, look: AnimalLook) -> Asset:
         rig=Rig(
             names=names,
             parents=np.array([place.get(above, -1) for above, _ in anatomy.joints.values()]),
-            heads=np.array([at for _, at in anatomy.joints.values()]),
+            heads=np.array([at for _, at in anatomy.joints.values()]) - _middle(anatomy),
             bones=tuple(arrays[f"{part} bones"] for part in _PARTS),
             weights=tuple(arrays[f"{part} weights"] for part in _PARTS),
             legs=4,
@@ -87,6 +87,7 @@ def animal_arrays(anatomy: Anatomy) -> Arrays:
     in_socket = _in_sockets(anatomy, vertices)
     is_head = (marks[triangles][..., 0] > 0.5).all(axis=1)
     found: dict[str, NDArray[np.generic]] = {}
+    middle = _middle(anatomy)
     for part, chosen, side in (("body", ~is_head, BODY_PX), ("head", is_head, HEAD_PX)):
         # What is below the eyes, their sockets too, lies below brows.
         eyes = float(anatomy["head"][2]) + EYE[anatomy.look.kind][0][2] * anatomy.head_m
@@ -94,7 +95,9 @@ def animal_arrays(anatomy: Anatomy) -> Arrays:
         own = triangles[chosen]
         layout = layout_of(vertices, own, side, low, np.asarray(in_socket[own].any(axis=1)))
         at = layout.sources
-        found |= _mesh_arrays(part, vertices[at], normals[at], layout.uvs, layout.triangles)
+        found |= _mesh_arrays(
+            part, vertices[at] - middle, normals[at], layout.uvs, layout.triangles
+        )
         found[f"{part} bones"], found[f"{part} weights"] = bones[at], weights[at]
         found[f"{part} picture"] = _coat_picture(painter, layout, known)
     for side_ in "LR":
@@ -102,7 +105,8 @@ def animal_arrays(anatomy: Anatomy) -> Arrays:
             (f"ear.{side_}", ear(anatomy, side_), None),
             (f"eye.{side_}", eye(anatomy, side_), _eye_picture(anatomy.look)),
         ):
-            found |= _mesh_arrays(part, piece.vertices, piece.normals, piece.uvs, piece.triangles)
+            places = piece.vertices - middle
+            found |= _mesh_arrays(part, places, piece.normals, piece.uvs, piece.triangles)
             joint = list(anatomy.joints).index(piece.joint)
             count = len(piece.vertices)
             found[f"{part} bones"] = np.full((count, 4), joint, np.uint16)
@@ -111,6 +115,15 @@ def animal_arrays(anatomy: Anatomy) -> Arrays:
                 _ear_picture(anatomy, painter, piece) if picture is None else picture
             )
     return found
+
+
+def _middle(anatomy: Anatomy) -> Doubles:
+    """Return (3,): the middle between nose and tail, on the floor, where the body frame is [m].
+
+    What turns about it needs least room.
+    """
+    ahead = 0.5 * float(anatomy["nose"][0] + anatomy["tail01"][0])
+    return np.array([ahead, 0.0, 0.0])
 
 
 def _in_sockets(anatomy: Anatomy, vertices: Doubles) -> NDArray[np.bool_]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_content.people.arm_room import arms_out
 from sailenv_content.people.cloth import strands
 from sailenv_content.people.dressing import PersonPart, Undressed, clothes
 from sailenv_content.people.fetch_bodies import SOURCE
@@ -84,6 +86,14 @@ def make_person(name: str, look: PersonLook, data: BodyData, *, labelled: bool =
         name=name,
         parts=tuple(ModelPart(mesh=_mesh(part), material=part.material) for part in parts),
     )
+    rig = Rig(
+        names=joint_names(data),
+        parents=joint_parents(data),
+        heads=joint_places(data, maker.vertices),
+        bones=tuple(part.bones for part in parts),
+        weights=tuple(part.weights for part in parts),
+        points=maker.points(),
+    )
     labels = list(dict.fromkeys(part.label for part in parts if part.label)) if labelled else []
     height = float(maker.vertices[:BODY_VERTICES, 2].max())
     return Asset(
@@ -107,14 +117,7 @@ def make_person(name: str, look: PersonLook, data: BodyData, *, labelled: bool =
             )
             for label in labels
         ),
-        rig=Rig(
-            names=joint_names(data),
-            parents=joint_parents(data),
-            heads=joint_places(data, maker.vertices),
-            bones=tuple(part.bones for part in parts),
-            weights=tuple(part.weights for part in parts),
-            points=maker.points(),
-        ),
+        rig=replace(rig, arms_out=arms_out(rig, parts)),
     )
 
 

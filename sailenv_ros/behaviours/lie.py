@@ -1,6 +1,8 @@
-"""A person who lies down, gets up, and lies down elsewhere."""
+"""A person who lies down, gets up, and lies down elsewhere; an animal that lies on the floor."""
 
 from __future__ import annotations
+
+from typing import ClassVar
 
 from pydantic import Field
 
@@ -17,6 +19,8 @@ __all__ = ["Lie", "lie"]
 
 class Lie(PersonParameters):
     """Parameters of `lie`."""
+
+    legs: ClassVar[tuple[int, ...]] = (2, 4)
 
     beds: tuple[str, ...] = Field(
         default=(), max_length=64, description="names of the beds; none: whatever one can lie on"

@@ -43,6 +43,8 @@ class AnimalFigure:
         Of the top of the head.
     radius_m : float
         Of a circle about the body's origin that it stands in, without its tail.
+    tail_m : float
+        How far its tail may reach out of that.
     """
 
     paws: Doubles
@@ -52,6 +54,7 @@ class AnimalFigure:
     middle: Doubles
     height_m: float
     radius_m: float
+    tail_m: float
 
     @property
     def stride(self) -> Stride:
@@ -63,6 +66,7 @@ class AnimalFigure:
             width_m=self.width_m,
             step_s=length / (_SPEED * float(np.sqrt(tall))),
             base_m=self.base_m,
+            lead_m=-float(self.paws[:, 0].mean()),
         )
 
 
@@ -75,6 +79,7 @@ def animal_figure_of(rig: Rig) -> AnimalFigure:
         paws = np.array([rig.head(f"{bones[-1]}.{side}") for bones, side in LEGS])
         tops = np.array([rig.head(f"{bones[0]}.{side}") for bones, side in LEGS])
         head, nose, tail = (rig.head(name) for name in ("head", "nose", "tail01"))
+        bones = [rig.head(name) for name in rig.names if name.startswith("tail")]
         size = float(np.linalg.norm(nose - head))
         _known[rig] = AnimalFigure(
             paws=paws,
@@ -83,6 +88,7 @@ def animal_figure_of(rig: Rig) -> AnimalFigure:
             width_m=float(paws[0, 1] - paws[1, 1]),
             middle=0.5 * (rig.head("root") + rig.head("spine03")),
             height_m=float(head[2]) + 0.9 * size,
-            radius_m=max(float(nose[0]), -float(tail[0])) + 0.06 * size,
+            radius_m=max(float(nose[0]), -float(tail[0])) + 0.11 * size,
+            tail_m=float(np.linalg.norm(np.diff(bones, axis=0), axis=1).sum()),
         )
     return _known[rig]

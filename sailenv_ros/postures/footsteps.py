@@ -66,12 +66,15 @@ class Stride:
         Time of a step.
     base_m : float
         From the feet behind to those in front; 0 for two feet.
+    lead_m : float
+        How far the body's place is ahead of the middle of its feet.
     """
 
     length_m: float
     width_m: float
     step_s: float
     base_m: float = 0.0
+    lead_m: float = 0.0
 
     @property
     def order(self) -> tuple[int, ...]:
@@ -80,14 +83,13 @@ class Stride:
 
     def scaled(self, factor: float) -> Stride:
         """Return it in lengths that are so many times as large."""
-        lengths = (part * factor for part in (self.length_m, self.width_m, self.base_m))
-        length, width, base = lengths
-        return replace(self, length_m=length, width_m=width, base_m=base)
+        names = ("length_m", "width_m", "base_m", "lead_m")
+        return replace(self, **{name: factor * getattr(self, name) for name in names})
 
     def foot(self, x: float, y: float, yaw: float, number: int) -> FootPrint:
         """Return the print of a foot that is in its place below a body."""
         across = 0.5 * self.width_m * (1.0 if number % 2 == 0 else -1.0)
-        ahead = 0.5 * self.base_m * (1.0 if number < 2 else -1.0)
+        ahead = 0.5 * self.base_m * (1.0 if number < 2 else -1.0) - self.lead_m
         c, s = float(np.cos(yaw)), float(np.sin(yaw))
         return FootPrint(x + ahead * c - across * s, y + ahead * s + across * c, yaw)
 
@@ -110,8 +112,8 @@ class Moment:
         Of the body, on the floor.
     ahead_m, before_m : float
         Length of the step, and of the one before.
-    arm_swing : float
-        Share of the swing of arms that there is room for; the less, the closer they are held.
+    swing_room : float
+        Share of the swing of arms, or of a tail, that there is room for; they are held closer.
     """
 
     feet: tuple[FootPrint, ...]
@@ -123,7 +125,7 @@ class Moment:
     yaw: float
     ahead_m: float
     before_m: float = 0.0
-    arm_swing: float = 1.0
+    swing_room: float = 1.0
 
     def scaled(self, factor: float) -> Moment:
         """Return it in lengths that are so many times as large."""
@@ -151,11 +153,14 @@ class Way:
     prints : tuple of (int, FootPrint)
         Which foot, and where it is put.
     step_s : float
+    lead_m : float
+        As that of the `Stride`.
     """
 
     start: tuple[FootPrint, ...]
     prints: tuple[tuple[int, FootPrint], ...]
     step_s: float
+    lead_m: float = 0.0
 
     @property
     def duration_s(self) -> float:
@@ -186,11 +191,12 @@ class Way:
             number = 0
         if number >= len(self.prints):
             feet = self.feet_after(len(self.prints))
-            return moment_of(feet)
+            return moment_of(feet, self.lead_m)
         share = min(max(time_s / self.step_s - number, 0.0), 1.0)
         feet = self.feet_after(number)
         side, goal = self.prints[number]
-        now, later = _middle(feet), _middle(_stepped(feet, side, goal))
+        after = _stepped(feet, side, goal)
+        now, later = _middle(feet, self.lead_m), _middle(after, self.lead_m)
         eased = share
         if number == 0:
             eased = share * share * (2.0 - share)  # from rest
@@ -221,15 +227,15 @@ class Way:
         return replace(self, prints=self.prints + other.prints)
 
 
-def moment_of(feet: tuple[FootPrint, ...]) -> Moment:
-    """Return a body whose feet stand."""
-    x, y, yaw = _middle(feet)
+def moment_of(feet: tuple[FootPrint, ...], lead_m: float = 0.0) -> Moment:
+    """Return a body whose feet stand; `lead_m` is that of its `Stride`."""
+    x, y, yaw = _middle(feet, lead_m)
     return Moment(feet=feet, goal=None, swinging=-1, share=0.0, x=x, y=y, yaw=yaw, ahead_m=0.0)
 
 
 def way_to_turn(feet: tuple[FootPrint, ...], yaw: float, stride: Stride) -> Way:
     """Return steps on the spot until the body points a way [rad]."""
-    x, y, now = _middle(feet)
+    x, y, now = _middle(feet, stride.lead_m)
     turn = _turn(now, yaw)
     count = max(1, int(np.ceil(abs(turn) / MOST_TURN_RAD[bool(stride.base_m)])))
     # First a foot on the side to which the body turns.
@@ -238,7 +244,7 @@ def way_to_turn(feet: tuple[FootPrint, ...], yaw: float, stride: Stride) -> Way:
     for number in range(1, count + 1):
         heading = now + turn * number / count
         prints += ((foot, stride.foot(x, y, heading, foot)) for foot in order)
-    return Way(start=feet, prints=tuple(prints), step_s=0.8 * stride.step_s)
+    return Way(start=feet, prints=tuple(prints), step_s=0.8 * stride.step_s, lead_m=stride.lead_m)
 
 
 def way_along(feet: tuple[FootPrint, ...], corners: ArrayLike, stride: Stride) -> Way:
@@ -260,7 +266,7 @@ def way_along(feet: tuple[FootPrint, ...], corners: ArrayLike, stride: Stride) -
         foot, way_m = order[(number - 1) % len(order)], number * step if number <= count else length
         x, y = line.at(way_m)
         prints.append((foot, stride.foot(x, y, line.heading(way_m), foot)))
-    return Way(start=feet, prints=tuple(prints), step_s=stride.step_s)
+    return Way(start=feet, prints=tuple(prints), step_s=stride.step_s, lead_m=stride.lead_m)
 
 
 def way_to_stand(
@@ -275,7 +281,7 @@ def way_to_stand(
     yaw : float or None
         Which way the body looks at the end [rad]; None for any.
     """
-    way = Way(start=feet, prints=(), step_s=stride.step_s)
+    way = Way(start=feet, prints=(), step_s=stride.step_s, lead_m=stride.lead_m)
     length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
     if length > _LEAST_WAY_M:
         first = line[1] - line[0]
@@ -329,13 +335,14 @@ def _stepped(feet: tuple[FootPrint, ...], number: int, place: FootPrint) -> tupl
     return (*feet[:number], place, *feet[number + 1 :])
 
 
-def _middle(feet: Sequence[FootPrint]) -> tuple[float, float, float]:
+def _middle(feet: Sequence[FootPrint], lead_m: float = 0.0) -> tuple[float, float, float]:
     def mean(parts: Iterable[float]) -> float:
         return sum(parts) / len(feet)
 
     first = feet[0].yaw
     yaw = first + mean(_turn(first, foot.yaw) for foot in feet)
-    return mean(foot.x for foot in feet), mean(foot.y for foot in feet), yaw
+    x, y = mean(foot.x for foot in feet), mean(foot.y for foot in feet)
+    return x + lead_m * float(np.cos(yaw)), y + lead_m * float(np.sin(yaw)), yaw
 
 
 def _turn(start: float, end: float) -> float:

@@ -13,13 +13,18 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.postures.animal_bearing import DOG_TAIL, TailHabit, animal_head, animal_tail
 from sailenv_ros.postures.animal_figure import LEGS, AnimalFigure, animal_figure_of
 from sailenv_ros.postures.easing import smooth_step
 from sailenv_ros.postures.footsteps import FootPrint, Moment
 from sailenv_ros.postures.limbs import bend_bones, two_bones
+from sailenv_ros.postures.look import AHEAD, Look
+from sailenv_ros.postures.reclining import HOCK_DEG, WRIST_DEG, Recline
 from sailenv_ros.postures.skeleton import Posture, joint_frames, turn_about
 from sailenv_ros.postures.walking import own_print
+from sailenv_ros.types.instance_states import rotation_matrices
 from sailenv_ros.types.rig import Rig
+from sailenv_ros.types.rotations import between, quaternions_of
 
 __all__ = ["four_legged_posture"]
 
@@ -52,13 +57,10 @@ _SPINE = (
 _RUMP = 0.40
 """Height of the root on the haunches, over that at rest."""
 
-_HOCK_DEG, _TAIL_DEG = -53.0, 16.0
-"""On the haunches: roll of the bones above the paws behind, which lie on the floor then; how far
-the tail rises [deg]."""
+_HOCK_DEG = -53.0
+"""On the haunches: roll of the bones above the paws behind, which lie on the floor then [deg]."""
 
-_MOST_LOOK_DEG = (75.0, 40.0)
 _MOST_BEND_DEG = 24.0
-_GLANCE_S = 2.6
 _FORWARD = np.array([1.0, 0.0, 0.0])
 
 
@@ -68,8 +70,10 @@ def four_legged_posture(
     time_s: float,
     *,
     seed: int = 0,
-    look_deg: tuple[float, float] = (0.0, 0.0),
+    look: Look = AHEAD,
+    tail: TailHabit = DOG_TAIL,
     sits: float = 0.0,
+    lies: tuple[float, Recline] | None = None,
 ) -> Posture:
     """Return the posture of an animal on its way, in the frame of its body there.
 
@@ -83,10 +87,13 @@ def four_legged_posture(
         Of its breath, its tail and its glances [s].
     seed : int
         Sets those of animals apart.
-    look_deg : (2,) tuple of float
-        Where it looks: to the left and down [deg]; both 0 for round about.
+    look : Look
+        Where it looks.
+    tail : TailHabit
     sits : float
         How far it has sat down on its haunches, 0 to 1.
+    lies : tuple of float and Recline, or None
+        How far it has lain down, 0 to 1, and how it lies.
     """
     figure = animal_figure_of(rig)
     own = [own_print(moment, place) for place in moment.feet]
@@ -97,13 +104,16 @@ def four_legged_posture(
         paws[swing] = _Paw.swung(
             figure, swing, own[swing], own_print(moment, moment.goal), moment.share
         )
+    lain = 0.0 if lies is None else lies[0]
     for paw in paws[2:]:
         paw.roll_deg += sits * _HOCK_DEG
-        paw.knee_up = 0.6 * sits
+        paw.knee_up = 0.6 * sits - 0.45 * lain
     root, turns = _trunk(rig, figure, paws, moment, sits)
+    if lies is not None and lain:
+        root, turns = _lain(rig, figure, paws, root, turns, lain, lies[1])
     blade = {}
     for paw in paws[:2]:
-        ahead = float(np.clip(paw.ahead / figure.legs_m[paw.number], -0.9, 0.9))
+        ahead = (1.0 - lain) * float(np.clip(paw.ahead / figure.legs_m[paw.number], -0.9, 0.9))
         blade[f"shoulder.{paw.side}"] = turns["spine03"] @ turn_about("y", -_BLADE_DEG * ahead)
     turns |= blade
     _, places = joint_frames(rig, Posture(root_m=root, turns=turns))
@@ -116,8 +126,16 @@ def four_legged_posture(
         turns |= _leg(rig, paw, top + down)
     breath = float(np.sin(2.0 * np.pi * (time_s / 2.3 + 0.37 * seed)))
     turns["belly"] = turns["spine02"] @ turn_about("y", 0.9 * breath)
-    turns |= _head(turns["spine03"], time_s, seed, look_deg)
-    turns |= _tail(rig, turns["root"], time_s, seed, sits)
+    turns |= animal_head(turns["spine03"], time_s, seed, look)
+    carried = root + turns["root"] @ (rig.head("tail01") - rig.head("root"))
+    turns |= animal_tail(
+        *(rig, turns["root"], float(carried[2]), time_s),
+        seed=seed,
+        habit=tail,
+        gladness=look.gladness,
+        rests=max(sits, lain),
+        room=moment.swing_room,
+    )
     return Posture(root_m=root, turns=turns)
 
 
@@ -139,7 +157,7 @@ class _Paw:
         rest = figure.paws[number]
         self.joint = np.array([place.x, place.y, rest[2]])
         self.yaw = place.yaw
-        self.hangs_deg = self.knee_up = 0.0
+        self.hangs_deg = self.knee_up = self.aside = 0.0
         self.ahead = place.x - float(rest[0])
         self.away = float(np.hypot(self.ahead, place.y - rest[1]))
         behind = -self.ahead / float(figure.legs_m[number])
@@ -226,6 +244,33 @@ def _trunk(
     return (1.0 - sits) * standing + sits * (chest - along), turns
 
 
+def _lain(
+    rig: Rig,
+    figure: AnimalFigure,
+    paws: list[_Paw],
+    root: Doubles,
+    turns: dict[str, Doubles],
+    share: float,
+    recline: Recline,
+) -> tuple[Doubles, dict[str, Doubles]]:
+    """Return where the root is, and the turns of the trunk, of one who lies down; legs fold."""
+    left, right = paws[2:]
+    behind = 0.5 * (left.joint + right.joint)
+    before = 0.5 * (paws[0].joint + paws[1].joint)
+    heading = float(np.degrees(np.arctan2(*(before - behind)[1::-1])))
+    facing = turn_about("z", heading)
+    low = behind * [1.0, 1.0, 0.0] + facing @ [recline.root_m[0], 0.0, recline.root_m[1]]
+    level = facing @ turn_about("y", recline.pitch_deg)
+    for paw in paws:
+        rolls = (WRIST_DEG, HOCK_DEG)[paw.number // 2]
+        paw.roll_deg += share * (rolls - paw.roll_deg)
+        paw.aside = (0.5, 1.3)[paw.number // 2] * share * (1.0 if paw.side == "L" else -1.0)
+    begin = quaternions_of(np.array(list(turns.values())))
+    end = np.broadcast_to(quaternions_of(level[None]), begin.shape)
+    turned = rotation_matrices(between(begin, end, share))
+    return (1.0 - share) * root + share * low, dict(zip(turns, turned, strict=True))
+
+
 def _above_reach(rig: Rig, paw: _Paw, top: Doubles) -> float:
     """Return how much too high a leg begins to reach its paw [m]; negative if it is not."""
     rest = [rig.head(f"{bone}.{paw.side}") for bone in paw.bones]
@@ -257,60 +302,8 @@ def _leg(rig: Rig, paw: _Paw, top: Doubles) -> dict[str, Doubles]:
     # Knees point forwards, elbows backwards.
     pole = _FORWARD if paw.number >= 2 else -_FORWARD
     facing = turn_about("z", float(np.degrees(paw.yaw)))
-    points = facing @ pole + np.array([0.0, 0.0, paw.knee_up])
+    points = facing @ (pole + np.array([0.0, paw.aside, 0.0])) + [0.0, 0.0, paw.knee_up]
     bent, end = two_bones(top, joint, first, second, points)
     upper, lower = bend_bones(rest[:3], (top, bent, end), pole, points)
     lies = facing @ turn_about("y", paw.hangs_deg)
     return dict(zip(names, (upper, lower, turn, lies), strict=True))
-
-
-def _head(
-    chest: Doubles, time_s: float, seed: int, look_deg: tuple[float, float]
-) -> dict[str, Doubles]:
-    """Return the turns of neck, head and ears, which look at something, or here and there."""
-    if any(look_deg):
-        yaw, pitch = (
-            float(np.clip(angle, -most, most))
-            for angle, most in zip(look_deg, _MOST_LOOK_DEG, strict=True)
-        )
-    else:
-        yaw, pitch = 34.0 * _glance(time_s, seed, 1), 9.0 * _glance(time_s, seed, 2)
-    facing = float(np.degrees(np.arctan2(chest[1, 0], chest[0, 0])))
-
-    def share(part: float) -> Doubles:
-        return turn_about("z", facing + part * yaw) @ turn_about("y", part * pitch)
-
-    turns = {"neck01": share(0.25), "neck02": share(0.6), "head": share(1.0)}
-    for number, side in enumerate("LR", start=3):
-        turns[f"ear.{side}"] = turns["head"] @ turn_about("z", 7.0 * _glance(time_s, seed, number))
-    return turns
-
-
-def _glance(time_s: float, seed: int, kind: int) -> float:
-    """Return where something looks that rests, and then turns elsewhere: -1 to 1."""
-    phase = time_s / _GLANCE_S + 0.31 * seed + 0.17 * kind
-    number = int(np.floor(phase))
-
-    def chosen(turn: int) -> float:
-        return float(np.sin(12.9898 * turn + 78.233 * kind + 3.7 * seed) * 43758.5453 % 2.0 - 1.0)
-
-    eased = smooth_step(min((phase - number) / 0.25, 1.0))
-    return chosen(number - 1) + eased * (chosen(number) - chosen(number - 1))
-
-
-def _tail(rig: Rig, pelvis: Doubles, time_s: float, seed: int, sits: float) -> dict[str, Doubles]:
-    """Return the turns of a tail that sways, the more the farther from the body."""
-    names = [name for name in rig.names if name.startswith("tail")]
-    level = pelvis
-    if sits:
-        # Behind the rump on the floor, however it is carried.
-        way = rig.head(names[3]) - rig.head(names[0])
-        rises = np.degrees(np.arctan2(way[2], -way[0]))
-        now = np.degrees(np.arctan2(-pelvis[2, 0], pelvis[0, 0]))
-        level = pelvis @ turn_about("y", sits * float(_TAIL_DEG - rises - now))
-    turns = {}
-    for number, name in enumerate(names):
-        swing = np.sin(2.0 * np.pi * (0.45 * time_s + 0.29 * seed) - 0.55 * number)
-        angle = 13.0 * (number + 1) / len(names) * float(swing)
-        turns[name] = level @ turn_about("z", angle) @ turn_about("x", angle)
-    return turns

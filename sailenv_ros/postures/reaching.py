@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sailenv_ros.postures.figure import figure_of
 from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.limbs import bend_arm, bend_leg, two_bones
+from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.skeleton import Posture, aligned, joint_frames, turn_about
 from sailenv_ros.postures.standing import SIDES, hands_at_ease, looking
 from sailenv_ros.postures.walking import own_print
@@ -80,7 +81,8 @@ def reaching_posture(
             turns[f"shoulder01.{side}"] = chest @ turn_about("x", -6.0 * sign)
         away = goal - middle
         down = float(np.degrees(np.arctan2(0.9 * figure.leg_m - away[2], max(away[0], 0.2))))
-        turns |= looking(turn_about("y", 0.45 * share * _LEAN_DEG[2]), 0.0, 0.6 * down)
+        look = Look(down_deg=0.6 * down, heed=1.0)
+        turns |= looking(turn_about("y", 0.45 * share * _LEAN_DEG[2]), look)
         root = middle + pelvis @ (rig.heads[0] - figure.hips)
         posture = on_its_feet(rig, Posture(root_m=root, turns=turns), moment)
         _, places = joint_frames(rig, posture)

@@ -11,6 +11,7 @@ from sailenv_ros.postures.easing import smoother_step
 from sailenv_ros.postures.figure import Figure, figure_of
 from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.limbs import bend_arm, bend_leg, two_bones
+from sailenv_ros.postures.look import AHEAD, Look
 from sailenv_ros.postures.skeleton import Posture, joint_frames, turn_about
 from sailenv_ros.postures.standing import SIDES, breathing, hands_at_ease, looking
 from sailenv_ros.postures.walking import walking_posture
@@ -25,6 +26,9 @@ SIT_S = 1.7
 
 _SEAT = 0.075
 """Height of the hips over what is sat upon, as a share of the leg's length on its own height."""
+
+_SLOPES = 0.12
+"""How far knees are below the hips of one whose feet reach the floor, over the leg's length."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,10 +50,8 @@ class SeatPlace:
 def seat_distance_m(rig: Rig, height_m: float) -> float:
     """Return how far behind the ankles the hips are on a seat of a height [m]."""
     figure = figure_of(rig)
-    thigh = float(np.linalg.norm(rig.head("lowerleg01.L") - rig.head("upperleg01.L")))
-    shank = figure.leg_m - thigh
-    knee = min(figure.ankle_m + 0.985 * shank, figure.ankle_m + shank)
-    drop = knee - (height_m + _hip_over_seat(figure))
+    thigh, knee = _thigh_and_knee_m(rig, figure)
+    drop = knee - (height_m + _hip_over_seat(figure)) + _lift_m(rig, height_m)
     return float(np.sqrt(max(thigh**2 - drop**2, (0.5 * thigh) ** 2))) - 0.05 * figure.leg_m
 
 
@@ -61,7 +63,7 @@ def sitting_posture(
     time_s: float,
     *,
     seed: int = 0,
-    look_deg: tuple[float, float] = (0.0, 0.0),
+    look: Look = AHEAD,
 ) -> Posture:
     """Return the posture of one who sits down: 0 stands, 1 sits.
 
@@ -72,7 +74,7 @@ def sitting_posture(
     """
     figure = figure_of(rig)
     eased = smoother_step(share)
-    standing = walking_posture(rig, moment, time_s, seed=seed, look_deg=look_deg)
+    standing = walking_posture(rig, moment, time_s, seed=seed, look=look)
     if eased <= 0.0:
         return standing
     start = standing.root_m - standing.turns["root"] @ (rig.heads[0] - figure.hips)
@@ -87,6 +89,7 @@ def sitting_posture(
     lean = 38.0 * float(np.sin(np.pi * eased)) - 9.0 * eased
     pelvis = turn_about("y", 0.7 * lean - 4.0 * eased)
     root = hips + pelvis @ (rig.heads[0] - figure.hips)
+    lift = eased**2 * _lift_m(rig, seat.height_m)
     turns: dict[str, Doubles] = {"root": pelvis}
     ankles = []
     for k, (side, sign) in enumerate(SIDES):
@@ -94,7 +97,7 @@ def sitting_posture(
         place = moment.feet[k]
         c, s = float(np.cos(moment.yaw)), float(np.sin(moment.yaw))
         x, y = place.x - moment.x, place.y - moment.y
-        ankle = np.array([c * x + s * y, c * y - s * x, figure.ankle_m])
+        ankle = np.array([c * x + s * y, c * y - s * x, figure.ankle_m + lift])
         ankles.append(ankle)
         foot = turn_about("z", np.degrees(place.yaw - moment.yaw))
         turns |= bend_leg(rig, side, hip, ankle, foot, np.array([1.0, 0.12 * sign, 0.25]))
@@ -103,9 +106,22 @@ def sitting_posture(
     turns["spine03"] = turn_about("y", 0.85 * lean)
     turns["spine01"] = chest
     turns |= _hands_on_thighs(rig, Posture(root_m=root, turns=turns), chest, eased, standing)
-    turns |= looking(turn_about("y", 0.25 * lean), look_deg[0], look_deg[1])
+    turns |= looking(turn_about("y", 0.25 * lean), look)
     turns |= hands_at_ease(rig, turns)
     return Posture(root_m=root, turns=turns)
+
+
+def _thigh_and_knee_m(rig: Rig, figure: Figure) -> tuple[float, float]:
+    """Return the length of the thigh, and the height of the knee above a foot that stands [m]."""
+    thigh = float(np.linalg.norm(rig.head("lowerleg01.L") - rig.head("upperleg01.L")))
+    return thigh, figure.ankle_m + 0.985 * (figure.leg_m - thigh)
+
+
+def _lift_m(rig: Rig, height_m: float) -> float:
+    """Return how far the feet hang above the floor from a seat of a height [m]."""
+    figure = figure_of(rig)
+    above = height_m + _hip_over_seat(figure) - _thigh_and_knee_m(rig, figure)[1]
+    return max(above - _SLOPES * figure.leg_m, 0.0)
 
 
 def _hip_over_seat(figure: Figure) -> float:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.postures.limbs import bend_arm
+from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.skeleton import turn_about
 from sailenv_ros.types.rig import Rig
 
@@ -30,17 +32,26 @@ def hanging_arms(
     swing_deg: tuple[float, float],
     ease_deg: float = 10.0,
     spread: float = 0.16,
+    out: float = 0.0,
 ) -> dict[str, Doubles]:
     """Return the turns of arms that hang, swung forward by angles, left and right [deg].
 
-    `spread` is the tangent of the angle from which upper arms hang straight down.
+    `spread` is the tangent of the angle from which upper arms hang straight down. Where that is
+    less than the tangent `out` of straight arms needs, lower arms hang outwards, too.
     """
+    spread = max(spread, out)
+    lengths = [
+        float(np.linalg.norm(rig.head(f"{end}.L") - rig.head(f"{begin}.L")))
+        for begin, end in itertools.pairwise(("upperarm01", "lowerarm01", "wrist", "finger3-3"))
+    ]
+    below = lengths[1] + 1.3 * lengths[2]
+    lower_out = max(0.03, (out * (lengths[0] + below) - spread * lengths[0]) / below)
     turns: dict[str, Doubles] = {}
     for (side, sign), swing in zip(SIDES, swing_deg, strict=True):
         angle = np.radians(swing)
         bend = angle + np.radians(ease_deg + 0.6 * max(swing, 0.0))
         upper = np.array([np.sin(angle), spread * sign, -np.cos(angle)])
-        lower = np.array([np.sin(bend), 0.03 * sign, -np.cos(bend)])
+        lower = np.array([np.sin(bend), lower_out * sign, -np.cos(bend)])
         turns |= bend_arm(rig, side, chest, None, upper, lower)
         # Shoulders are raised at rest, where arms are spread.
         turns[f"shoulder01.{side}"] = chest @ turn_about("x", -_DROP_DEG * sign)
@@ -84,10 +95,9 @@ def breathing(time_s: float, seed: int) -> float:
     return float(np.sin(2.0 * np.pi * (time_s / 3.7 + 0.37 * seed)))
 
 
-def looking(chest: Doubles, yaw_deg: float, pitch_deg: float) -> dict[str, Doubles]:
-    """Return the turns of neck and head that look sideways and down, from the chest [deg]."""
-    yaw = float(np.clip(yaw_deg, -_MOST_LOOK_DEG[0], _MOST_LOOK_DEG[0]))
-    pitch = float(np.clip(pitch_deg, -_MOST_LOOK_DEG[1], _MOST_LOOK_DEG[1]))
+def looking(chest: Doubles, look: Look) -> dict[str, Doubles]:
+    """Return the turns of neck and head that look somewhere, from the chest."""
+    yaw, pitch = look.within(_MOST_LOOK_DEG)
 
     def share(part: float) -> Doubles:
         return chest @ turn_about("z", part * yaw) @ turn_about("y", part * pitch)

@@ -13,6 +13,7 @@ from sailenv_ros.postures.easing import smooth_step
 from sailenv_ros.postures.figure import Figure, figure_of
 from sailenv_ros.postures.footsteps import FootPrint, Moment
 from sailenv_ros.postures.limbs import bend_leg
+from sailenv_ros.postures.look import AHEAD, Look
 from sailenv_ros.postures.skeleton import Posture, turn_about
 from sailenv_ros.postures.standing import (
     SIDES,
@@ -42,7 +43,7 @@ def walking_posture(
     time_s: float,
     *,
     seed: int = 0,
-    look_deg: tuple[float, float] = (0, 0),
+    look: Look = AHEAD,
 ) -> Posture:
     """Return the posture of a body on its way, in the frame of the body there.
 
@@ -55,8 +56,8 @@ def walking_posture(
         Of its breath [s].
     seed : int
         Sets people's breaths apart.
-    look_deg : (2,) tuple of float
-        Where it looks: to the left and down from the chest [deg].
+    look : Look
+        Where it looks, from the chest.
     """
     figure = figure_of(rig)
     stands = moment.swinging < 0
@@ -98,10 +99,13 @@ def walking_posture(
     chest = turn_about("z", twist) @ turn_about("y", 2.5 * vigour + 0.25 * breath)
     turns["spine03"] = turn_about("z", -0.3 * twist) @ turn_about("y", 2.0 * vigour)
     turns["spine01"] = chest
-    arm = 46.0 * moment.arm_swing * float(np.clip(ahead, -1.0, 1.0))
+    arm = 46.0 * moment.swing_room * float(np.clip(ahead, -1.0, 1.0))
     swings_deg = -arm + 0.6 * breath, arm + 0.6 * breath
-    turns |= hanging_arms(rig, chest, swings_deg, spread=0.09 + 0.07 * moment.arm_swing)
-    turns |= looking(turn_about("y", 1.0), look_deg[0], look_deg[1])
+    room = moment.swing_room
+    turns |= hanging_arms(
+        rig, chest, swings_deg, spread=0.09 + 0.07 * room, out=room * rig.arms_out
+    )
+    turns |= looking(turn_about("y", 1.0), look)
     turns |= hands_at_ease(rig, turns)
     return Posture(root_m=root, turns=turns)
 

@@ -55,6 +55,8 @@ class Rig:
         Keypoints.
     legs : {2, 4}
         Number of legs that it walks on: 2 as people do, 4 as animals do.
+    arms_out : float
+        Tangent of the angle from which straight arms hang down at least, off the clothes.
 
     Raises
     ------
@@ -69,6 +71,7 @@ class Rig:
     weights: tuple[NDArray[np.float32], ...]
     points: tuple[RigPoint, ...] = ()
     legs: Literal[2, 4] = 2
+    arms_out: float = 0.0
 
     def __post_init__(self) -> None:
         count = len(self.names)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +23,36 @@ from sailenv_ros.world.beds import Lane, lanes_of
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.seats import Seat, seats_of
 
-__all__ = ["Crowd", "Disc", "body_size"]
+__all__ = ["Crowd", "Disc", "Inhabitant", "body_size"]
 
 Doubles = NDArray[np.float64]
 Place = tuple[float, float]
 
 Disc = tuple[float, float, float]
 """A place that someone takes: x, y and a radius [m]."""
+
+
+class Inhabitant(NamedTuple):
+    """A person or an animal as others see it.
+
+    Attributes
+    ----------
+    x, y : float
+        Where it is [m].
+    radius_m : float
+        That it takes.
+    eyes_m : float
+        Height of its eyes over the world's origin.
+    """
+
+    x: float
+    y: float
+    radius_m: float
+    eyes_m: float
+
+
+_MOVER_EYES_M = 0.8
+"""Height at which one looks at a mover [m]."""
 
 _ROUNDED_M = 0.05
 _NEAR_M = 0.9
@@ -63,7 +87,7 @@ class Crowd:
         self._maps: dict[BodySize, FreeSpace] = {}
         self._seats: tuple[Seat, ...] | None = None
         self._lanes: tuple[Lane, ...] | None = None
-        self.people: dict[str, Disc] = {}
+        self.people: dict[str, Inhabitant] = {}
         self.taken: dict[str, tuple[Place, ...]] = {}
 
     def _bodies(self) -> list[Body]:
@@ -72,7 +96,7 @@ class Crowd:
 
     def discs(self, without: str) -> list[Disc]:
         """Return what others take: people but one, and movers."""
-        found = [disc for name, disc in self.people.items() if name != without]
+        found = [(o.x, o.y, o.radius_m) for name, o in self.people.items() if name != without]
         return [*found, *self._others()]
 
     def is_free(self, name: str, place: Place) -> bool:
@@ -96,16 +120,22 @@ class Crowd:
                     return True
         return False
 
-    def look_deg(self, name: str, world_from_body: Doubles, eyes_m: float) -> tuple[float, float]:
-        """Return where an object is for eyes at a height: to the left, and down [deg]."""
-        target = self.middle(name)
-        if target is None:
-            return 0.0, 0.0
-        own = world_from_body[:3, :3].T @ (target - world_from_body[:3, 3])
-        away = float(np.hypot(own[0], own[1]))
-        down = eyes_m - float(own[2])
-        yaw = float(np.degrees(np.arctan2(own[1], own[0])))
-        return yaw, float(np.degrees(np.arctan2(down, max(away, 0.2))))
+    def face(self, name: str) -> Doubles | None:
+        """Return (3,): where one looks who looks at a person, an animal or an object [m]."""
+        other = self.people.get(name)
+        if other is None:
+            return self.middle(name)
+        return np.array([other.x, other.y, other.eyes_m])
+
+    def nearest_face(self, name: str, place: Place, most_m: float) -> Doubles | None:
+        """Return (3,): the eyes of whom somebody else has nearest, person, animal or mover [m]."""
+        found = [other for other_name, other in self.people.items() if other_name != name]
+        found += [Inhabitant(x, y, radius, _MOVER_EYES_M) for x, y, radius in self._others()]
+        away = [(float(np.hypot(o.x - place[0], o.y - place[1])), n) for n, o in enumerate(found)]
+        if not away or min(away)[0] > most_m:
+            return None
+        nearest = found[min(away)[1]]
+        return np.array([nearest.x, nearest.y, nearest.eyes_m])
 
     def seats(self) -> tuple[Seat, ...]:
         """Return all seats."""
@@ -176,8 +206,8 @@ class Crowd:
     ) -> list[Place]:
         """Return free places that a person can reach near a place, the nearest first [m]."""
         space = self.free_space(size)
-        x, y, _ = self.people.get(name, (*place, 0.0))
-        start = self._nearest(space, (x, y))
+        own = self.people.get(name)
+        start = self._nearest(space, place if own is None else (own.x, own.y))
         if start is None:
             return []
         rows, columns = np.nonzero(space.regions == space.regions[start])

@@ -6,6 +6,7 @@ Knows the crowd around, and not the engine; what is done where a way ends is tol
 from __future__ import annotations
 
 import math
+import zlib
 from dataclasses import replace
 
 import numpy as np
@@ -28,6 +29,7 @@ from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Actor
+from sailenv_ros.world.attention import Attention
 from sailenv_ros.world.crowd import Crowd, body_size
 
 __all__ = ["Place", "Stepper", "yaw_of"]
@@ -37,10 +39,6 @@ Place = tuple[float, float]
 
 _BLOCKED_S = 1.2
 """Time for which one waits for another who is in the way [s]."""
-
-_LEAST_SWING, _WIDE = 0.15, 0.18
-"""Share of their swing that arms have beside furniture, and the room for all of it, as a share of
-the height: hands come before the cylinder that ways are found for."""
 
 
 class Stepper:
@@ -73,7 +71,10 @@ class Stepper:
         self._gait = gait_of(asset)
         self.crowd: Crowd | None = None
         self.problem = ""
-        self._looks_at = ""
+        self._seed = zlib.crc32(name.encode()) % 97
+        eyes_m = self._gait.eyes_m * scale
+        on_four = self._actor.rig.legs == 4
+        self._attention = Attention(name, self._seed, eyes_m, by_itself=on_four)
 
     @property
     def _radius_m(self) -> float:
@@ -98,7 +99,7 @@ class Stepper:
         self._swings = 1.0, 1.0
         self._space: FreeSpace | None = None
         self._goal: tuple[Place, float | None] | None = None
-        self._looks_at = ""
+        self._attention.forget()
         self.matrix = self._matrix_of_moment()
 
     def _feet_at(self, matrix: Doubles) -> tuple[FootPrint, ...]:
@@ -108,7 +109,7 @@ class Stepper:
     def _moment(self) -> Moment:
         if self._way is not None:
             return self._way.at(self._way_s)
-        return moment_of(self._feet)
+        return moment_of(self._feet, self._stride().lead_m)
 
     def _own_moment(self) -> Moment:
         """Return it before the scale."""
@@ -147,7 +148,7 @@ class Stepper:
         self._way, self._way_s, self._waited_s = way, 0.0, 0.0
         # The map that the way was found in: a new one at each step would cost more than the walk.
         self._space = None if self.crowd is None else self.crowd.free_space(self._size)
-        self._looks_at = ""
+        self._attention.target = ""
         return True
 
     def _walk_on(self) -> None:
@@ -167,20 +168,20 @@ class Stepper:
         self.matrix = self._matrix_of_moment()
 
     def _swing_at(self, moment: Moment) -> float:
-        """Return the share of their swing that arms have room for."""
+        """Return the share of their swing that arms, or a tail, have room for."""
         space = self._space
         if space is None:
             return 1.0
         cell = space.cell_of((moment.x, moment.y))
         room_m = 0.0 if cell is None else float(space.clearance_m[cell])
-        share = _LEAST_SWING + (1.0 - _LEAST_SWING) * room_m / (_WIDE * space.body.height_m)
-        return min(share, 1.0)
+        least = self._gait.least_swing
+        return min(least + (1.0 - least) * room_m / (self._gait.swing_m * self._scale), 1.0)
 
     def _with_swing(self, moment: Moment) -> Moment:
         """Return it with the swing of arms now: from step to step it changes smoothly."""
         before, after = self._swings
         done = 1.0 if self._way is None else smooth_step(moment.share)
-        return replace(moment, arm_swing=before + (after - before) * done)
+        return replace(moment, swing_room=before + (after - before) * done)
 
     def _wait(self, way: Way, number: int) -> None:
         """Stand where a step has ended; go round who stands in the way, or give up."""

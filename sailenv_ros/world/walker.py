@@ -6,7 +6,6 @@ way ends is an activity of `world.activities`.
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Callable, Iterable
 
 import numpy as np
@@ -19,12 +18,18 @@ from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Held, Instant, SpotActivity
+from sailenv_ros.world.activities.floor import (
+    FLOOR,
+    LyingOnFloor,
+    RestingOnFloor,
+    SittingOnFloor,
+)
 from sailenv_ros.world.activities.handling import ways_to_put, ways_to_take
-from sailenv_ros.world.activities.haunches import FLOOR, Haunches, steps_up
 from sailenv_ros.world.activities.lying import lanes_for, ways_to_lie
 from sailenv_ros.world.activities.opening import ways_to_open
 from sailenv_ros.world.activities.playing import Playing
 from sailenv_ros.world.activities.sitting import seats_for, ways_to_sit
+from sailenv_ros.world.crowd import Inhabitant
 from sailenv_ros.world.stepper import Place, Stepper, yaw_of
 
 __all__ = ["Walker"]
@@ -75,7 +80,9 @@ class Walker(Stepper):
         """Do what is to be done in the step that begins at a simulated time [s]."""
         self._time_s = time_s + STEP_S
         self.matrix_before = self.matrix
-        if self._way is not None:
+        walks = self._way is not None
+        self._attention.advance(self.crowd, self.matrix, self._time_s, walks=walks)
+        if walks:
             self._walk_on()
         elif self._does is not None:
             goes_on = self._does.advance(self.matrix, self._own_moment())
@@ -85,25 +92,22 @@ class Walker(Stepper):
                 self.leave()
         if self.crowd is not None:
             x, y = self._place
-            self.crowd.people[self._name] = (x, y, self._radius_m)
+            eyes_m = self._actor.floor_m + self._gait.eyes_m * self._scale
+            self.crowd.people[self._name] = Inhabitant(x, y, self._radius_m, eyes_m)
 
     @property
     def posture(self) -> Posture:
         """Where its root and joints are now, in the body frame before the scale."""
-        look = 0.0, 0.0
-        if self._looks_at and self.crowd is not None:
-            eyes_m = self._gait.eyes_m * self._scale
-            look = self.crowd.look_deg(self._looks_at, self.matrix, eyes_m)
         now = Instant(
             moment=self._own_moment(),
             time_s=self._time_s,
-            seed=zlib.crc32(self._name.encode()) % 97,
-            look_deg=look,
+            seed=self._seed,
+            look=self._attention.look,
         )
         if self._does is not None and self._way is None:
             return self._does.posture(now)
         posture = self._gait.posture(
-            self._actor.rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg
+            self._actor.rig, now.moment, now.time_s, seed=now.seed, look=now.look
         )
         return posture if self.held is None else with_carrying_arm(self._actor.rig, posture)
 
@@ -136,11 +140,13 @@ class Walker(Stepper):
     def sit_on(self, name: str) -> bool:
         """Begin to walk to a seat and sit down; False if it cannot."""
         if self._on_four:
-            return name == FLOOR and self._sit_down()
+            return name == FLOOR and self._rest(SittingOnFloor)
         return self.crowd is not None and self._go_and(ways_to_sit(self._actor, self.crowd, name))
 
     def lie_on(self, name: str) -> bool:
         """Begin to walk to a bed and lie down; False if it cannot."""
+        if self._on_four:
+            return name == FLOOR and self._rest(LyingOnFloor)
         return self.crowd is not None and self._go_and(ways_to_lie(self._actor, self.crowd, name))
 
     def play(self, play: ClipPlay) -> bool:
@@ -193,6 +199,8 @@ class Walker(Stepper):
         """Return the names of what it can lie on and nobody has taken."""
         if self.crowd is None:
             return ()
+        if self._on_four:
+            return (FLOOR,)
         lanes = lanes_for(self._actor, self.crowd)
         return tuple(dict.fromkeys(lane.name for lane, _ in lanes))
 
@@ -202,7 +210,7 @@ class Walker(Stepper):
 
     def look_at(self, name: str) -> None:
         """Look at an object from now on; the empty name looks ahead."""
-        self._looks_at = name
+        self._attention.target = name
 
     # -- inside ----------------------------------------------------------------------------
 
@@ -214,12 +222,12 @@ class Walker(Stepper):
     def _on_four(self) -> bool:
         return self._actor.rig.legs == 4
 
-    def _sit_down(self) -> bool:
-        """Begin to sit down on the floor; False if something is being done."""
+    def _rest(self, kind: type[RestingOnFloor]) -> bool:
+        """Begin to rest on the floor; False if something is being done."""
         if self._does is not None or self._way is not None:
             return False
-        self._way, self._way_s, self._goal = steps_up(self._actor, self._feet), 0.0, None
-        self._does = Haunches(self._actor, self._place)
+        self._does = kind(self._actor, self._place)
+        self._way, self._way_s, self._goal = self._does.steps(self._feet), 0.0, None
         return True
 
     def _stopped(self) -> None:

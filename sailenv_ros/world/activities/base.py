@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours.person import Activity
 from sailenv_ros.postures.figure import Figure, figure_of
 from sailenv_ros.postures.footsteps import Moment
+from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.reaching import Grip
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.types.model import Asset
@@ -65,14 +66,14 @@ class Instant:
         Simulated time [s].
     seed : int
         Sets people's breaths apart.
-    look_deg : (2,) tuple of float
-        Where one looks: to the left and down [deg].
+    look : Look
+        Where one looks.
     """
 
     moment: Moment
     time_s: float
     seed: int
-    look_deg: tuple[float, float]
+    look: Look
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

@@ -69,7 +69,7 @@ class _Handling(HandActivity):
     def posture(self, now: Instant) -> Posture:
         """Return the posture, in the frame of the body."""
         rig = self._actor.rig
-        stands = walking_posture(rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg)
+        stands = walking_posture(rig, now.moment, now.time_s, seed=now.seed, look=now.look)
         begin = with_carrying_arm(rig, stands) if self._carries else stands
         if self._reaches is None:
             return begin

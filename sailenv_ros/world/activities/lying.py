@@ -91,7 +91,7 @@ class Lying(SpotActivity):
     def __init__(self, actor: Actor, lane: Lane, seat: Seat, hips_m: float) -> None:
         self._actor, self._lane = actor, lane
         self._hips = lane.head - hips_m * lane.way
-        self._sitting = Sitting(actor, seat)
+        self._sitting = Sitting(actor, seat, lane.heights)
         self.feet, self.yaw, self.piece = self._sitting.feet, self._sitting.yaw, lane.name
         self.takes = tuple(
             (float(x), float(y))
@@ -228,7 +228,8 @@ def ways_to_lie(actor: Actor, crowd: Crowd, name: str) -> list[Lying]:
             seat = lane.seat(edge, hips_m)
             if seat is not None and seat.height_m - actor.floor_m <= highest:
                 found.append(Lying(actor, lane, _perch(actor, seat), hips_m))
-    x, y, _ = crowd.people.get(actor.name, (0.0, 0.0, 0.0))
+    own = crowd.people.get(actor.name)
+    x, y = (0.0, 0.0) if own is None else (own.x, own.y)
     return sorted(found, key=lambda way: np.hypot(way.feet[0] - x, way.feet[1] - y))
 
 

@@ -104,7 +104,7 @@ class Opening(HandActivity):
     def posture(self, now: Instant) -> Posture:
         """Return the posture, in the frame of the body."""
         rig = self._actor.rig
-        stands = walking_posture(rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg)
+        stands = walking_posture(rig, now.moment, now.time_s, seed=now.seed, look=now.look)
         if self._first is None:
             return stands
         reaches = self._reached(stands, now.moment) or self._first

@@ -102,9 +102,7 @@ class Playing(SpotActivity):
         blend = self._stands
         if blend <= 0.0:
             return posture
-        stands = walking_posture(
-            self._rig, now.moment, now.time_s, seed=now.seed, look_deg=now.look_deg
-        )
+        stands = walking_posture(self._rig, now.moment, now.time_s, seed=now.seed, look=now.look)
         one, two = (JointTurns.of(self._rig, each) for each in (posture, stands))
         return one.towards(two, blend).posture(self._rig)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from sailenv_content.people.fetch_bodies import body_data, fetch_bodies
 from sailenv_content.people.figures import Build, figure
@@ -18,9 +20,16 @@ from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.dataset.formats.coco import _keypoints
 from sailenv_ros.errors import AssetError, UnknownName
+from sailenv_ros.postures.figure import figure_of
+from sailenv_ros.postures.footsteps import moment_of, standing_feet
+from sailenv_ros.postures.skeleton import joint_frames, skin_matrices
+from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.scene.randomise.things import random_people
 from sailenv_ros.types.geometry import look_at
+from sailenv_ros.types.model import Asset
+from sailenv_ros.types.rig import Rig
 from sailenv_ros.types.skeleton import COCO_KEYPOINTS
+from sailenv_ros.world.skin import skin_over
 
 SCENE = """
 version: 1
@@ -115,3 +124,37 @@ def test_keypoints_say_what_hides_them(data: BodyData, tmp_path: Path) -> None:
     assert len(frame.joints(ids["anna"]).names) == 58
     row = frame.objects.row(ids["anna"])
     assert frame.objects.box_sizes[row][1] < 0.75  # her arms hang
+
+
+@pytest.mark.parametrize("name", ["person_08", "person_24"])
+def test_hands_of_one_who_stands_hang_beside_the_clothes(data: BodyData, name: str) -> None:
+    asset = make_person(name, people()[name], data, labelled=True)
+    assert asset.rig is not None
+    hangs, touches = (
+        hand_off_clothes(asset, rig) for rig in (asset.rig, replace(asset.rig, arms_out=0.0))
+    )
+    assert hangs > 0.008
+    assert touches < 0.002
+
+
+def hand_off_clothes(asset: Asset, rig: Rig) -> float:
+    """How far hands are from the cloth around hips and legs; below 0 within it [m]."""
+    feet = standing_feet(0.0, 0.0, 0.0, figure_of(rig).stride)
+    frames = joint_frames(rig, walking_posture(rig, moment_of(feet), 0.0))
+    moved = skin_over(asset.model, rig, skin_matrices(rig, *frames)).meshes
+    is_hand = [name.startswith(("wrist", "finger")) for name in rig.names]
+    main = rig.bones[1][np.arange(len(rig.bones[1])), rig.weights[1].argmax(axis=1)]
+    hands = moved[1].positions[np.array(is_hand)[main]]
+    off = [9.0]
+    for part in asset.parts:
+        for place in part.meshes if part.name == "trousers" else ():
+            triangles = asset.model.parts[place].mesh.triangles
+            middles, facing = (
+                values[triangles].mean(axis=1)
+                for values in (moved[place].positions, moved[place].normals)
+            )
+            away, near = cKDTree(middles).query(hands, distance_upper_bound=0.05)
+            some = np.isfinite(away)
+            between = hands[some] - middles[near[some]]
+            off += np.einsum("ij,ij->i", between, facing[near[some]]).tolist()
+    return min(off)

@@ -11,6 +11,7 @@ from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.person_body import PersonBody
+from sailenv_ros.world.placement import Placement
 from tests.support.peopled_worlds import box, one, person, placed, world_of
 
 PAWS = ("forepaw.L", "forepaw.R", "hindpaw.L", "hindpaw.R")
@@ -98,6 +99,35 @@ def test_an_animal_walks_round_furniture_and_keeps_out_of_it(cat: Asset) -> None
     world.close()
 
 
+def test_a_dog_turns_in_a_circle_of_half_its_length_and_takes_in_its_tail() -> None:
+    asset = AssetLibrary(installed_sources()).get("dog_02")
+    assert asset.rig is not None
+    nose, tail = (float(asset.rig.head(name)[0]) for name in ("nose", "tail01"))
+    assert nose == pytest.approx(-tail)
+    # A closet: too narrow for one that would turn about the middle of its feet.
+    walls = [
+        placed(f"wall {number}", box(f"w{number}", size, "wall"), *at, static=True)
+        for number, (size, at) in enumerate([
+            ((2.4, 0.1, 0.8), (0.0, 0.6)), ((2.4, 0.1, 0.8), (0.0, -0.6)),
+            ((0.1, 1.1, 0.8), (-1.15, 0.0)), ((0.1, 1.1, 0.8), (1.15, 0.0)),
+        ])
+    ]  # fmt: skip
+    world = world_of(placed("rex", asset, -0.55, 0.0), *walls)
+    rex = one(world, "rex")
+    world.step(1)
+    for goal in (0.55, -0.55, 0.55):
+        deepest = 0.0  # in the first one it takes in its tail
+        assert rex.walker.walk_to((goal, 0.0))
+        while rex.walker.activity == "walking":
+            world.step(12)
+            skin = np.abs(skin_of(rex)[:, :2])
+            if rex.walker.activity == "walking":
+                deepest = max(deepest, float((skin - [1.1, 0.55]).max()))
+    assert np.hypot(rex.pose().position_m[0] - 0.55, rex.pose().position_m[1]) < 0.05
+    assert deepest < 0.02
+    world.close()
+
+
 def test_animals_and_people_do_not_walk_through_each_other(dog: Asset) -> None:
     world = world_of(
         placed("rex", dog, -1.5, 0.0),
@@ -165,6 +195,75 @@ def test_one_sits_down_on_the_floor_and_gets_up(name: str) -> None:
     assert tom.walker.activity == "standing"
     assert tom.walker.walk_to((1.0, 0.5))
     world.close()
+
+
+@pytest.mark.parametrize("name", ["cat_02", "dog_02"])
+def test_one_lies_down_upon_its_belly_and_gets_up(name: str) -> None:
+    asset = AssetLibrary(installed_sources()).get(name)
+    world = world_of(placed("tom", asset, 0.0, 0.0), placed("far", box("b", (0.3, 0.3, 0.5)), 3, 3))
+    tom = one(world, "tom")
+    world.step(1)
+    assert tom.walker.beds() == ("floor",)
+    assert not tom.walker.lie_on("far")
+    assert tom.walker.lie_on("floor")
+    seen, stood = [], None
+    for _ in range(110):
+        world.step(12)
+        seen.append(tom.walker.activity)
+        skin = [mesh.positions for mesh in tom.deformation().meshes]
+        assert min(float(points[:, 2].min()) for points in skin) > -0.004
+        if seen[-1] != "walking":
+            paws = paws_of(tom)
+            stood = paws if stood is None else stood
+            assert np.abs(paws - stood).max() < 1e-9
+    assert list(dict.fromkeys(seen)) == ["walking", "lying down", "lying"]
+    assert asset.rig is not None
+    own = asset.rig.joint_of
+    trunk = np.isin(asset.rig.bones[0][:, 0], [own[n] for n in ("belly", "spine02", "spine03")])
+    assert abs(float(skin[0][trunk, 2].min())) < 0.006  # the belly is upon the floor
+    skeleton = tom.skeleton()
+    elbow, root = (
+        skeleton.joints[skeleton.joint_names.index(name)][2] for name in ("forearm.L", "root")
+    )
+    assert elbow < 0.2 * asset.rig.head("forearm.L")[2] + 0.02
+    assert root < 0.6 * asset.rig.head("root")[2]
+    tom.walker.get_up()
+    for _ in range(40):
+        world.step(12)
+    assert tom.walker.activity == "standing"
+    assert tom.walker.walk_to((1.0, 0.5))
+    world.close()
+
+
+def tail_tips(name: str, *others: Placement) -> tuple[np.ndarray, np.ndarray]:
+    """Where joints of a tail are in ten seconds, (T, 2, 3), and where the head points [deg]."""
+    asset = AssetLibrary(installed_sources()).get(name)
+    world = world_of(placed("tom", asset, 0.0, 0.0), *others)
+    tom = one(world, "tom")
+    joints, tips, turned = tom.skeleton().joint_names, [], []
+    for _ in range(300):
+        world.step(8)
+        places = tom.skeleton().joints
+        tips.append([places[joints.index(part)] for part in ("tail05", "tail07")])
+        nose = places[joints.index("nose")] - places[joints.index("head")]
+        turned.append(float(np.degrees(np.arctan2(nose[1], nose[0]))))
+    world.close()
+    return np.array(tips), np.array(turned)
+
+
+@pytest.mark.parametrize("name", ["cat_01", "dog_02"])
+def test_the_tail_of_one_who_sees_somebody_tells_it(name: str) -> None:
+    alone, _ = tail_tips(name, placed("far", box("b", (0.3, 0.3, 0.5)), 3, 3))
+    tips, turned = tail_tips(name, person("ben", 1.0, 1.2))
+    at_him = np.abs(turned - np.degrees(np.arctan2(1.2, 1.0))) < 12.0
+    assert at_him.sum() > 90  # it looks at him, now and then
+    glad = tips[at_him]
+    held, held_alone = (float(np.median(part[:, 0, 2])) for part in (glad, alone))
+    assert held > held_alone + 0.01
+    assert np.ptp(glad[:, 1, 1]) > (1.2 if name == "cat_01" else 3.0) * np.ptp(alone[:, 1, 1])
+    # Nothing jumps: from frame to frame the tip goes a small part of its way.
+    steps = np.linalg.norm(np.diff(tips[:, 1], axis=0), axis=1)
+    assert steps.max() < 0.3 * np.ptp(tips[:, 1, 1])
 
 
 def test_behaviours_that_need_hands_are_refused(cat: Asset) -> None:

@@ -5,11 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sailenv_content.people.fetch_bodies import fetch_bodies
 from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.placement import Placement
+from sailenv_ros.world.skin import contact_skin
 from tests.support.peopled_worlds import (
     CATEGORIES,
     STICK,
@@ -210,4 +213,23 @@ def test_behaviours_of_people_are_refused_for_things() -> None:
     block = world.body(world.find("block"))
     with pytest.raises(InvalidRequest, match="a person for the behaviour 'walk_around'"):
         block.attach(start_behaviour("walk_around", {}, seed=1, object_name="block", place=0))
+    world.close()
+
+
+def test_one_who_is_stout_sits_higher_and_not_in_the_seat() -> None:
+    fetch_bodies()
+    asset = AssetLibrary(installed_sources()).get("person_19")
+    world = world_of(
+        placed("ben", asset, 1.2, 0.3),
+        placed("bench", box("bench", (0.5, 1.2, 0.45), "bench"), 0, 0),
+    )
+    ben = one(world, "ben")
+    world.step(1)
+    assert ben.walker.sit_on("bench")
+    while ben.walker.activity != "seated":
+        world.step(12)
+    matrix = ben.world_from_body()
+    skin = contact_skin(asset).places(ben.walker.posture) @ matrix[:3, :3].T + matrix[:3, 3]
+    over = (np.abs(skin[:, 0]) < 0.2) & (np.abs(skin[:, 1]) < 0.6) & (skin[:, 2] > 0.2)
+    assert 0.425 < float(skin[over, 2].min()) < 0.45  # it presses in by 2 cm
     world.close()
