@@ -344,6 +344,13 @@ def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
         ("oven~cooker:3", "door", 1.5, 0.06, 0.0),
         ("washbasin~pedestal:3", "lever", 0.6, 0.2, np.pi * 17.5 / 180),
         ("fridge~double:3", "door", 1.5, 0.06, 0.0),
+        ("shoe_rack~tipping:3", "flap 1", 0.55, 0.3, 0.0),
+        ("blind~shutters:3", "left leaf", 1.5, 0.06, 0.0),
+        ("box~chest:3", "lid", 1.6, 0.9, 0.0),
+        ("box~trunk:3", "lid", 1.5, 0.9, 0.0),
+        ("box~jewels:3", "lid", 1.6, 0.9, 0.0),
+        ("bin~pedal:3", "lid", 1.3, 0.9, 0.0),
+        ("washing_machine~top:3", "lid", 1.3, 0.9, 0.0),
     ],
 )
 def test_what_opens_shuts_or_clicks_by_itself(
