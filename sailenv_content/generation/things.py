@@ -27,6 +27,9 @@ EDGE_M = 0.012
 
 APART_M = 0.012
 
+BRIDGED_M = 0.06
+"""Most that what is under a corner of a thing is above what is under its middle [m]."""
+
 MOST = 0.7
 """Share of its size by which it has to be over its carrier."""
 
@@ -171,6 +174,9 @@ def _kept(
     spots = centre + np.vstack([np.zeros(2), MOST * corners, corners])
     heights = stock.support_heights(item.asset, item.scale, spots)
     if not np.isfinite(heights[:5]).all():
+        return
+    # Across the arms of a chair or on the rim of a basin nothing is laid.
+    if heights.max() - heights[0] > BRIDGED_M:
         return
     if thing.highest is not None and heights.max() > thing.highest:
         return

@@ -128,6 +128,27 @@ def test_on_a_hob_stand_pots_alone_and_nothing_in_a_sink(stock: AssetIndex, asse
     assert count > 24
 
 
+@pytest.mark.parametrize("asset", ["armchair~tub:1", "armchair~shell:2", "sofa~rolled:1"])
+def test_cushions_lie_on_the_seat_and_not_across_the_arms(stock: AssetIndex, asset: str) -> None:
+    rules = rules_of()
+    seat = Item(
+        name="seat", asset=asset, entry={}, block=block_of(stock, asset, 1.0, 0.0, 0.0, 0.0),
+        x=0.0, y=0.0, yaw_deg=0.0,
+        rule=rules.furniture["couch" if "sofa" in asset else "armchair"],
+    )  # fmt: skip
+    laid = [
+        thing
+        for seed in range(40)
+        for thing in lay_things([seat], rules, stock, RandomStream(seed), Namer())
+    ]
+    assert laid
+    for thing in laid:
+        corners = thing.block.corners()
+        under = np.vstack([[(thing.block.x, thing.block.y)], corners])
+        heights = stock.support_heights(asset, 1.0, under)
+        assert heights.max() - heights[0] < 0.07
+
+
 def test_washbasins_have_nothing_let_in(stock: AssetIndex) -> None:
     for seed, style in itertools.product(range(2), ("cabinet", "bowl", "pedestal")):
         assert not stock.let_in(f"washbasin~{style}:{seed}")
