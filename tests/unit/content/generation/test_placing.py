@@ -10,6 +10,7 @@ import pytest
 from sailenv_content.generation.asset_index import AssetIndex
 from sailenv_content.generation.furnishing import Furnisher
 from sailenv_content.generation.items import Item, Namer, block_of
+from sailenv_content.generation.lighting import times_of
 from sailenv_content.generation.plan import Area, RoomPlan
 from sailenv_content.generation.room_shapes import outer_sides
 from sailenv_content.generation.things import lay_things
@@ -147,6 +148,16 @@ def test_cushions_lie_on_the_seat_and_not_across_the_arms(stock: AssetIndex, ass
         under = np.vstack([[(thing.block.x, thing.block.y)], corners])
         heights = stock.support_heights(asset, 1.0, under)
         assert heights.max() - heights[0] < 0.07
+
+
+def test_a_room_without_lamps_is_seen_by_day(stock: AssetIndex) -> None:
+    light = rules_of().light
+    times = ["noon", "evening", "overcast", "sunset"]
+    room = furnisher(stock, 0)
+    assert times_of(times, light, room.items, [room.area]) == ["noon", "overcast"]
+    assert times_of(["evening"], light, room.items, [room.area]) == ["evening"]
+    assert room.place("ceiling lamp")
+    assert times_of(times, light, room.items, [room.area]) == times
 
 
 def test_washbasins_have_nothing_let_in(stock: AssetIndex) -> None:
