@@ -23,7 +23,7 @@ KINDS = ("living_room", "kitchen", "bedroom", "office", "bathroom", "apartment")
 SEEDS = (350001, 350002, 350003, 350004)
 """One row each."""
 
-TILE_PX = (360, 270)
+TILE_PX = (352, 264)
 """Width and height of a picture."""
 
 SEATS = ("chair", "couch")
