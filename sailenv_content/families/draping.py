@@ -17,7 +17,7 @@ from sailenv_content.procedural.forms import circle, loft
 from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
 from sailenv_ros.types.model import Mesh
 
-__all__ = ["hanging", "hoop", "rod", "straight"]
+__all__ = ["fringe", "hanging", "hoop", "rod", "straight"]
 
 
 def hanging(
@@ -88,6 +88,17 @@ def hoop(radius: float, thick: float, *, segments: int = 16) -> Mesh:
     """Return a ring about the y axis, around the origin."""
     mesh = closed_ring(circle(8) * thick + (radius, 0.0), segments=segments)
     return placed(mesh, turn_deg=(90.0, 0.0, 0.0))
+
+
+def fringe(
+    b: PieceBuilder, material: PieceMaterial, ends: np.ndarray, out: tuple[float, float]
+) -> None:
+    """Add threads from points (N, 3) that lie down on the floor, by a vector in x and y [m]."""
+    for point in ends:
+        aside = b.between(-0.006, 0.006)
+        tip = point + np.array([out[0] + aside, out[1] + aside, 0.0])
+        path = [point, (point + tip) / 2 + (0.0, 0.0, 0.001), (tip[0], tip[1], 0.003)]
+        b.form(material, swept(path, 0.003, sides=4), collides="none", volume=1e-7)
 
 
 def rod(

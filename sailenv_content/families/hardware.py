@@ -14,6 +14,7 @@ from sailenv_ros.types.joints import Detents, SoftClose
 __all__ = [
     "DOOR_CLOSE",
     "DRAWER_CLOSE",
+    "FLAP_CLOSE",
     "KNOB_CLICKS",
     "LID_CLOSE",
     "MAGNET",
@@ -54,6 +55,7 @@ def clicks(strength: float, every_deg: float) -> Detents:
 
 DRAWER_CLOSE = SoftClose(within=0.06, speed=0.06, strength=4.0)
 DOOR_CLOSE = SoftClose(within=math.radians(25.0), speed=0.4, strength=1.0)
+FLAP_CLOSE = SoftClose(within=math.radians(20.0), speed=0.3, strength=2.0)
 LID_CLOSE = SoftClose(within=math.radians(75.0), speed=0.5, strength=0.2)
 
 MAGNET = catch(1.5)

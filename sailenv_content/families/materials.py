@@ -154,10 +154,14 @@ def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> PieceMaterial:
     return PieceMaterial(made, 1.0, 2500.0)
 
 
-def printed(name: str, picture: Texture) -> PieceMaterial:
-    """Return paper or canvas with a picture, whose u and v go from 0 to 1."""
-    made = Material(name=name, base_colour_texture=picture, base_colour=(1.0,) * 4, roughness=0.8)
-    return PieceMaterial(made, 1.0, 700.0)
+def printed(
+    name: str, picture: Texture, roughness: float = 0.8, density: float = 700.0
+) -> PieceMaterial:
+    """Return paper, canvas or what is woven with a picture, whose u and v go from 0 to 1."""
+    made = Material(
+        name=name, base_colour_texture=picture, base_colour=(1.0,) * 4, roughness=roughness
+    )
+    return PieceMaterial(made, 1.0, density)
 
 
 @cache

@@ -6,6 +6,7 @@ collides, whichever reaches further.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 
 import numpy as np
@@ -15,12 +16,16 @@ from sailenv_ros.assets.arranging import shape_points, support_heights
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.types.model import Asset
 
-__all__ = ["AssetIndex"]
+__all__ = ["HOB", "AssetIndex"]
 
 Floats = NDArray[np.float64]
 
 LIGHT_GAP_M = 0.03
 """Between what glows of a lamp and its light [m]."""
+
+HOB = "stove"
+LET_IN = (HOB, "sink")
+"""Categories of what is let into worktops."""
 
 MAX_KEPT = 4096
 """Most sizes that are kept: pieces of families have names without end."""
@@ -51,6 +56,20 @@ class AssetIndex:
     def bounds(self, name: str, scale: float = 1.0) -> Floats:
         """Return (2, 3) float64: lowest and highest corner in the body frame [m]."""
         return np.asarray(self._bounds(name) * scale)
+
+    def let_in(self, name: str, scale: float = 1.0) -> Mapping[str, Floats]:
+        """Return (2, 3) float64: corners of the hob and the sink in a worktop, by category [m].
+
+        A washbasin is a sink itself, and has nothing let in.
+        """
+        asset = self.asset(name)
+        found = {}
+        for part in asset.parts:
+            if part.category in LET_IN and part.category != asset.category:
+                points = np.concatenate([asset.model.parts[k].mesh.positions for k in part.meshes])
+                corners = np.stack([points.min(axis=0), points.max(axis=0)])
+                found[part.category] = corners.astype(np.float64) * scale
+        return found
 
     def back_m(self, name: str, scale: float = 1.0) -> float:
         """Return how far what is drawn reaches behind the origin [m]; negative for behind."""

@@ -149,7 +149,8 @@ class CompanionSpots:
         if item.side is None:
             return None
         along = item.along_m + self.positioner.dice.between(companion.aside)
-        return self.positioner.against(item.side, along, rule, asset, scale)
+        top = item.block.high
+        return self.positioner.against(item.side, along, rule, asset, scale, above_m=top)
 
     def _around(
         self, item: Item, companion: CompanionRule, rule: FurnitureRule, asset: str, count: int

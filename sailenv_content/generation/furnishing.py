@@ -6,6 +6,7 @@ way, what must stay free stays free, and all doors can still be reached.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -15,7 +16,7 @@ from sailenv_content.generation.companion_spots import CompanionSpots
 from sailenv_content.generation.items import Item, Namer
 from sailenv_content.generation.pieces import PieceChooser, RoomStyle
 from sailenv_content.generation.plan import Area, Block, RoomPlan
-from sailenv_content.generation.positions import Positioner
+from sailenv_content.generation.positions import APART_M, Positioner, offset
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.authoring.room_rules.rule_files import Rules
 from sailenv_ros.authoring.room_rules.rule_models import CompanionRule, FurnitureRule, PieceRule
@@ -28,6 +29,12 @@ TRIES_OF_ONE = 12
 
 COMPANION_TRIES = 8
 FROM_WALL_M = 0.07
+LEAST_APART_M = 0.01
+"""Least gap between pieces that do not [m]."""
+
+SEEN_M = 1.2
+"""Up to which height there is nothing between what faces each other [m]."""
+
 LEAST_GAP_M = 0.001
 """Least gap between pieces that belong together [m]."""
 
@@ -133,7 +140,7 @@ class Furnisher:
     def _proposed(self, name: str, rule: FurnitureRule, asset: str, group: _Group) -> Item | None:
         """Draw a place for a piece; None if it cannot stand there."""
         scale = round(self.dice.between(rule.scale), 2)
-        if rule.at in ("wall", "corner") or rule.height is not None:
+        if rule.at in ("wall", "corner") or rule.hangs:
             item = self.positioner.at_wall(rule, asset, scale, corner=rule.at == "corner")
         elif rule.at == "ceiling":
             x, y = self.positioner.middle()
@@ -170,7 +177,8 @@ class Furnisher:
             rugs = [each for each in (*self.items, *group.items) if each.is_flat]
             if item.side is not None and any(_over(item.block, rug.block) for rug in rugs):
                 return False
-            if not self.plan.is_free(item.block):
+            apart = LEAST_APART_M if rule.eye_level is None else APART_M
+            if not self.plan.is_free(item.block, apart):
                 return False
             if not all(self.area.holds(c) and self.plan.is_empty(c) for c in item.clear):
                 return False
@@ -195,7 +203,7 @@ class Furnisher:
         for companion in rule.companions:
             if not companion.needed and not self.dice.chance(companion.chance):
                 continue
-            least = 1 if companion.needed else 0
+            least = max(1, companion.count[0]) if companion.needed else 0
             if self._companions(item, companion, group) < least:
                 return False
         return True
@@ -219,10 +227,24 @@ class Furnisher:
                     group.ends[id(item), companion.where] = proposed
                     if companion.where == "around":
                         item.around.append(proposed)
+                    if companion.in_view:
+                        group.clear.append(_between(item, proposed))
                     break
                 del group.items[mark[0] - 1 :], group.names[mark[2] - 1 :]
                 del group.clear[mark[1] - len(proposed.clear) :]
         return placed
+
+
+def _between(item: Item, other: Item) -> Block:
+    """Return what lies between a piece and another before it, up to the eyes of who sits."""
+    c, s = math.cos(item.block.yaw_rad), math.sin(item.block.yaw_rad)
+    ahead = c * (other.block.x - item.block.x) + s * (other.block.y - item.block.y)
+    x, y = offset(item, ahead / 2.0, 0.0)
+    return Block(
+        x=x, y=y, half_x=max(0.0, ahead / 2.0 - item.block.half_x),
+        half_y=min(item.block.half_y, other.block.half_y), yaw_rad=item.block.yaw_rad,
+        low=0.02, high=SEEN_M,
+    )  # fmt: skip
 
 
 def _thin(block: Block) -> Block:

@@ -17,7 +17,7 @@ from sailenv_content.generation.checks import Fault, faults, look_backend, unsee
 from sailenv_content.generation.draft import Draft
 from sailenv_content.generation.furnishing import Furnisher
 from sailenv_content.generation.items import Item, Namer
-from sailenv_content.generation.lighting import environment_entry, light_entries
+from sailenv_content.generation.lighting import environment_entry, light_entries, times_of
 from sailenv_content.generation.pieces import PieceChooser
 from sailenv_content.generation.plan import RoomPlan
 from sailenv_content.generation.room_agents import StandingWorld, agent_entries, best_first
@@ -241,7 +241,8 @@ class Generator:
         def dice(purpose: str) -> RandomStream:
             return RandomStream(draft.kind, draft.seed, draft.attempt, purpose)
 
-        rule = self._rules.light[dice("time of the day").one(draft.file.light)]
+        times = times_of(draft.file.light, self._rules.light, draft.items, draft.shell.areas)
+        rule = self._rules.light[dice("time of the day").one(times)]
         objects = [item.described() for item in draft.items]
         data: dict[str, Any] = {
             "version": 1,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from sailenv_content.generation.items import Item
@@ -11,7 +11,7 @@ from sailenv_content.generation.plan import Area, WallGap, WallSide
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.authoring.room_rules.rule_models import LightRule
 
-__all__ = ["environment_entry", "light_entries"]
+__all__ = ["environment_entry", "light_entries", "times_of"]
 
 MAX_LAMPS = 6
 """Lamps that shine, so that baking their light takes no longer than that of the rest."""
@@ -24,6 +24,22 @@ _LEAST_SHARE, _MOST_SHARE = 0.4, 1.3
 
 _IN_FRONT_M = 0.2
 _BELOW_CEILING_M = 0.3
+
+
+def times_of(
+    times: Sequence[str],
+    rules: Mapping[str, LightRule],
+    items: Sequence[Item],
+    areas: Sequence[Area],
+) -> Sequence[str]:
+    """Return the times of the day that suit a room: not those of lamps, if it has none.
+
+    A lamp that stands on the floor or hangs from the ceiling is asked for in each of its areas.
+    """
+    lamps = [item for item in items if item.light is not None and item.rule is not None]
+    if all(any(area.holds(lamp.block) for lamp in lamps) for area in areas):
+        return times
+    return [time for time in times if not rules[time].lamps] or times
 
 
 def environment_entry(rule: LightRule, dice: RandomStream) -> dict[str, Any]:

@@ -30,7 +30,7 @@ SEEDS = (0, 99_999)
 DRAWS = 12
 """Seeds that are compared, for the one that suits the room best."""
 
-SEEDED = 0.75
+SEEDED = 0.9
 """Share of pieces by seeds where a rule names objects of the catalogue too."""
 
 _METALS = tuple(metal(name).surface.name for name in ("chrome", "steel", "brass", "#26272a"))

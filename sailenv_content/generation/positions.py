@@ -19,11 +19,16 @@ from sailenv_ros.assets.arranging import RESTING_GAP_M, WALL_GAP_M
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.authoring.room_rules.rule_models import FurnitureRule
 
-__all__ = ["Positioner", "offset"]
+__all__ = ["APART_M", "Positioner", "offset"]
 
 FROM_WINDOW_M = 0.05
 BESIDE_CURTAIN_M = 0.16
 BELOW_CEILING_M = 0.01
+OVER_M = 0.12
+"""Between a piece and what hangs above it [m]."""
+
+APART_M = 0.15
+"""Between what hangs at eye level and what is beside it [m]."""
 
 _CURTAIN_OUT_M, _CURTAIN_IN_M = 0.30, 0.12
 
@@ -75,10 +80,18 @@ class Positioner:
         *,
         turn: float = 0.0,
         digits: int = 2,
+        above_m: float = 0.0,
     ) -> Item | None:
-        """Return a piece with its back to a wall, at a place along it; None if it cannot be."""
+        """Return a piece with its back to a wall, at a place along it; None if it cannot be.
+
+        What hangs at eye level hangs higher if there is something below it, `above_m` high.
+        """
         low, high = self.stock.bounds(asset, scale)
         height = 0.0 if rule.height is None else round(self.dice.between(rule.height), 2)
+        if rule.eye_level is not None:
+            middle = self.dice.between(rule.eye_level)
+            foot = max(middle - float(high[2] - low[2]) / 2.0, above_m + OVER_M)
+            height = round(foot - float(low[2]), 2)
         gap = round(self.dice.between(rule.gap), 2)
         turn = round(turn)
         along = _rounded_along(side, along, digits)
@@ -225,7 +238,8 @@ def _beside_holes(
     """Return the gap to the wall that curtains ask for; None if something is in the way."""
     gap = 0.0
     for hole in side.holes:
-        margin = FROM_WINDOW_M + (_CURTAIN_OUT_M if hole.curtains else 0.0)
+        margin = FROM_WINDOW_M if rule.eye_level is None else APART_M
+        margin += _CURTAIN_OUT_M if hole.curtains else 0.0
         beside = extent[1] <= hole.along[0] - margin or extent[0] >= hole.along[1] + margin
         if beside:
             continue
@@ -237,7 +251,7 @@ def _beside_holes(
                 (hole.along[1] - _CURTAIN_IN_M, hole.along[1] + _CURTAIN_OUT_M),
             ):
                 if extent[0] < high and extent[1] > low:
-                    if rule.height is not None:
+                    if rule.hangs:
                         return None
                     gap = BESIDE_CURTAIN_M
     return gap

@@ -9,8 +9,9 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sailenv_content.generation.asset_index import AssetIndex
+from sailenv_content.generation.asset_index import HOB, AssetIndex
 from sailenv_content.generation.items import Item, Lamp, Namer, block_of
 from sailenv_content.generation.pieces import PieceChooser
 from sailenv_content.generation.plan import Block
@@ -25,6 +26,9 @@ EDGE_M = 0.012
 """Least distance of an object from the edge of its carrier [m]."""
 
 APART_M = 0.012
+
+BRIDGED_M = 0.06
+"""Most that what is under a corner of a thing is above what is under its middle [m]."""
 
 MOST = 0.7
 """Share of its size by which it has to be over its carrier."""
@@ -49,7 +53,7 @@ def lay_things(
                     asset = kinds.get(index) or pieces.chosen(dice.one(thing.put))
                     kinds[index] = asset
                     laid = _laid_before(item, guest, thing, asset, stock, dice)
-                    yield from _kept(laid, item, taken, stock, namer, prefix, thing.highest)
+                    yield from _kept(laid, item, taken, stock, namer, prefix, thing)
         if item.rule.holds is not None:
             for thing in rules.things[item.rule.holds]:
                 if not dice.chance(thing.chance):
@@ -58,7 +62,7 @@ def lay_things(
                     asset = pieces.chosen(dice.one(thing.put))
                     for _ in range(TRIES):
                         laid = _laid(item, thing, asset, stock, dice)
-                        found = list(_kept(laid, item, taken, stock, namer, prefix, thing.highest))
+                        found = list(_kept(laid, item, taken, stock, namer, prefix, thing))
                         if found:
                             yield from found
                             break
@@ -72,7 +76,8 @@ def _laid(item: Item, thing: ThingRule, asset: str, stock: AssetIndex, dice: Ran
     """Return a thing somewhere on a piece, in the piece's own axes."""
     scale = round(dice.between(thing.scale), 2)
     turn = float(round(dice.between(thing.turn)))
-    low, high = stock.bounds(item.asset, item.scale)
+    hob = stock.let_in(item.asset, item.scale).get(HOB) if thing.hob else None
+    low, high = stock.bounds(item.asset, item.scale) if hob is None else hob
     middle, half = (low + high) / 2.0, (high - low) / 2.0
     block = block_of(stock, asset, scale, 0.0, 0.0, turn)
     reach = np.abs(block.corners() - (block.x, block.y)).max(axis=0)
@@ -149,9 +154,9 @@ def _kept(
     stock: AssetIndex,
     namer: Namer,
     prefix: str,
-    highest_m: float | None,
+    thing: ThingRule,
 ) -> Iterable[Item]:
-    """Yield a thing if it lies within its carrier, no higher than it may, and touches no other."""
+    """Yield a thing if it lies within its carrier, where it may, and touches no other."""
     low, high = stock.bounds(item.asset, item.scale)
     middle, half = (low + high) / 2.0, (high - low) / 2.0
     offsets = np.abs(laid.block.corners() - middle[:2])
@@ -159,6 +164,10 @@ def _kept(
         return
     if any(laid.block.meets(other, APART_M) for other in taken):
         return
+    for category, corners in stock.let_in(item.asset, item.scale).items():
+        allowed = thing.hob and category == HOB
+        if not allowed and laid.block.meets(_seen_from_above(corners)):
+            return
     # Tops are round or have a basin in them: it lies where most of it is over something.
     centre = np.array([laid.block.x, laid.block.y])
     corners = laid.block.corners() - centre
@@ -166,9 +175,21 @@ def _kept(
     heights = stock.support_heights(item.asset, item.scale, spots)
     if not np.isfinite(heights[:5]).all():
         return
-    if highest_m is not None and heights.max() > highest_m:
+    # Across the arms of a chair or on the rim of a basin nothing is laid.
+    if heights.max() - heights[0] > BRIDGED_M:
+        return
+    if thing.highest is not None and heights.max() > thing.highest:
         return
     taken.append(laid.block)
     category = stock.asset(laid.asset).category
     laid.name = namer.name(f"{prefix} {category}" if prefix else category)
     yield laid
+
+
+def _seen_from_above(bounds: NDArray[np.float64]) -> Block:
+    """Return the box around corners (2, 3), at whatever height."""
+    (x, y, _), (half_x, half_y, _) = bounds.mean(axis=0), np.ptp(bounds, axis=0) / 2.0
+    return Block(
+        x=float(x), y=float(y), half_x=float(half_x), half_y=float(half_y),
+        low=-math.inf, high=math.inf,
+    )  # fmt: skip

@@ -6,6 +6,7 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
+from sailenv_content.families.hardware import LID_CLOSE
 from sailenv_content.families.hollows import vessel_walls
 from sailenv_content.families.lathe import closed_ring, vessel
 from sailenv_content.families.materials import metal, paint
@@ -36,6 +37,7 @@ def _pedal(b: PieceBuilder, v: Values) -> None:
         opens_deg=80.0,
         friction=0.2,
         damping=0.4,
+        soft_close=LID_CLOSE,
     ):
         turn = np.linspace(0, np.pi / 2, 8)
         dome = [
@@ -160,6 +162,7 @@ def _sorting(b: PieceBuilder, v: Values) -> None:
             opens_deg=85.0,
             friction=0.3,
             damping=0.4,
+            soft_close=LID_CLOSE,
         ):
             lid = extruded(rectangle(each - 0.006, d, 0.02), 0.022, bevel=0.006)
             b.form(colour, lid, (0.0, y, z))

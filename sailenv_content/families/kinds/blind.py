@@ -7,6 +7,7 @@ import numpy as np
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import front_panel
+from sailenv_content.families.hardware import MAGNET
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.materials import FABRICS, WOODS, PieceMaterial, fabric, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
@@ -173,7 +174,9 @@ def _shutters(b: PieceBuilder, v: Values) -> None:
         left = name == "left leaf"
         at = (leaf.high[0], leaf.high[1] if left else leaf.low[1], leaf.middle[2])
         axis = (0.0, 0.0, 1.0 if left else -1.0)
-        with b.hinge(name, "blind", at=at, axis=axis, opens_deg=100.0, friction=0.6):
+        with b.hinge(
+            name, "blind", at=at, axis=axis, opens_deg=100.0, friction=0.6, detents=MAGNET
+        ):
             half = leaf.middle[2]
             lower = Box(leaf.low, (*leaf.high[:2], half - 0.001))
             upper = Box((*leaf.low[:2], half + 0.001), leaf.high)

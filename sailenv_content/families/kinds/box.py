@@ -6,6 +6,7 @@ from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.contents import folded
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import front_panel
+from sailenv_content.families.hardware import LID_CLOSE
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import open_box
 from sailenv_content.families.materials import WOODS, fabric, metal, paint
@@ -43,6 +44,7 @@ def _chest(b: PieceBuilder, v: Values) -> None:
         opens_deg=95.0,
         friction=2.0,
         damping=2.0,
+        soft_close=LID_CLOSE,
     ):
         b.box(v.top, (d + 0.03, w + 0.03, 0.024), (0.015, 0.0, z + 0.012), bevel=0.005)
         if v.cloth is not None:
@@ -119,6 +121,7 @@ def _jewels(b: PieceBuilder, v: Values) -> None:
         opens_deg=100.0,
         friction=0.1,
         damping=0.05,
+        soft_close=LID_CLOSE,
     ):
         b.box(v.material, (d, w, 0.012), (0.0, 0.0, z + 0.006), bevel=0.003)
         b.box(v.top, (0.8 * d, 0.8 * w, 0.005), (0.0, 0.0, z + 0.0145), bevel=0.0015)
@@ -207,6 +210,7 @@ def _trunk(b: PieceBuilder, v: Values) -> None:
         opens_deg=92.0,
         friction=2.0,
         damping=2.0,
+        soft_close=LID_CLOSE,
     ):
         b.box(v.coat, (d, w, t), (0.0, 0.0, z + tall - t / 2), bevel=0.004)
         for sign in (-1.0, 1.0):

@@ -28,21 +28,26 @@ SILVER = PieceMaterial(
     2500.0,
 )
 
+# What is drawn as a flat mirror is flat to a millimetre, and what is nearer to its plane than 4 mm
+# counts as it: edges are ground less, frames stand back or out by more.
+EDGE_M, PROUD_M = 0.0006, 0.0055
+
 
 def _framed(b: PieceBuilder, v: Values) -> None:
     """Hang a mirror in a frame."""
     w, h, bar = v.width, v.width * v.ratio, v.bar
     frame(b, v.material, w, h, bar=bar, depth=v.depth, step=v.step)
-    size = (0.005, w - 2 * bar + 0.004, h - 2 * bar + 0.004)
-    b.box(SILVER, size, (0.45 * v.depth, 0.0, h / 2), bevel=0.001, collides=False)
+    size = (0.004, w - 2 * bar + 0.004, h - 2 * bar + 0.004)
+    b.box(SILVER, size, (0.42 * v.depth, 0.0, h / 2), bevel=EDGE_M, collides=False)
 
 
 def _upright(
     b: PieceBuilder, material: PieceMaterial, outline: np.ndarray, thick: float, x: float, z: float
 ) -> None:
     """Stand an outline in y and z on the wall."""
+    bevel = EDGE_M if material is SILVER else 0.0015
     mesh = placed(
-        extruded(outline, thick, bevel=0.0015, tile_m=material.tile_m), (0, 0, 0), (90, 0, 90)
+        extruded(outline, thick, bevel=bevel, tile_m=material.tile_m), (0, 0, 0), (90, 0, 90)
     )
     b.form(material, mesh, (x, 0.0, z))
 
@@ -52,7 +57,7 @@ def _round(b: PieceBuilder, v: Values) -> None:
     r, oval = v.width / 2, v.oval
     h = 2 * r * oval
     disc = circle(56) * (r - 0.4 * v.bar, (r - 0.4 * v.bar) * oval)
-    _upright(b, SILVER, disc, 0.006, 0.006, h / 2)
+    _upright(b, SILVER, disc, 0.005, 0.006, h / 2)
     rows = [
         (r - v.bar, 0.0),
         (r, 0.0),
@@ -75,12 +80,13 @@ def _arch(b: PieceBuilder, v: Values) -> None:
         return np.concatenate([[(-r, rim), (r, rim)], top])
 
     _upright(b, v.material, outline(0.0) - np.array([0.0, h / 2]), v.depth, 0.0, h / 2)
-    _upright(b, SILVER, outline(v.bar) - np.array([0.0, h / 2]), 0.003, v.depth - 0.001, h / 2)
+    pane = outline(v.bar) - np.array([0.0, h / 2])
+    _upright(b, SILVER, pane, PROUD_M + 0.001, v.depth - 0.001, h / 2)
     if v.panes:
-        x = v.depth + 0.003
-        b.box(v.material, (0.006, 0.012, h - v.bar), (x, 0.0, h / 2), collides=False)
+        x, thick = v.depth + PROUD_M, 2.0 * PROUD_M
+        b.box(v.material, (thick, 0.012, h - v.bar), (x, 0.0, h / 2), collides=False)
         for z in np.linspace(0.0, h - w / 2, 4)[1:]:
-            b.box(v.material, (0.006, w - v.bar, 0.012), (x, 0.0, float(z)), collides=False)
+            b.box(v.material, (thick, w - v.bar, 0.012), (x, 0.0, float(z)), collides=False)
 
 
 def _standing(b: PieceBuilder, v: Values) -> None:
@@ -97,8 +103,9 @@ def _standing(b: PieceBuilder, v: Values) -> None:
         "mirror", "mirror", at=(0, 0, middle), axis=(0, -1, 0), opens_deg=18.0, friction=1.0
     ):
         b.box(v.material, (0.022, w, tall), (0.0, 0.0, middle), bevel=0.004)
-        size = (0.003, w - 2 * v.bar, tall - 2 * v.bar)
-        b.box(SILVER, size, (0.0122, 0.0, middle), bevel=0.0006, collides=False)
+        size = (PROUD_M + 0.001, w - 2 * v.bar, tall - 2 * v.bar)
+        at = (0.01 + size[0] / 2, 0.0, middle)
+        b.box(SILVER, size, at, bevel=EDGE_M, collides=False)
 
 
 def _cabinet(b: PieceBuilder, v: Values) -> None:
@@ -128,9 +135,9 @@ def _cabinet(b: PieceBuilder, v: Values) -> None:
             )
             b.box(
                 SILVER,
-                (0.005, size[1], size[2]),
-                (leaf.high[0] - 0.0025, *leaf.middle[1:]),
-                bevel=0.001,
+                (0.004, size[1], size[2]),
+                (leaf.high[0] - 0.002, *leaf.middle[1:]),
+                bevel=EDGE_M,
             )
             grip = float(leaf.low[1]) + 0.02 if left else float(leaf.high[1]) - 0.02
             handle(b, v.metal, "knob", float(leaf.high[0]), grip, 0.15 * h)

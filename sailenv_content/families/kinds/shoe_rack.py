@@ -8,6 +8,7 @@ from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.cabinets import CABINET_MATERIALS, cabinet_body, divided, outer_doors
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, front_panel, handle
+from sailenv_content.families.hardware import FLAP_CLOSE
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.joinery import shelf
 from sailenv_content.families.materials import FABRICS, WOODS, metal, paint
@@ -115,7 +116,15 @@ def _tipping(b: PieceBuilder, v: Values) -> None:
     for number, panel in enumerate(fronts.rows([1.0] * v.flaps, CLEARANCE_M)):
         at = (float(panel.high[0]), 0.0, float(panel.low[2]))
         axis = (0.0, 1.0, 0.0)
-        with b.hinge(f"flap {number + 1}", "door", at=at, axis=axis, opens_deg=32.0, friction=0.6):
+        with b.hinge(
+            f"flap {number + 1}",
+            "door",
+            at=at,
+            axis=axis,
+            opens_deg=32.0,
+            friction=0.6,
+            soft_close=FLAP_CLOSE,
+        ):
             front_panel(b, v.scheme[1], v.front, panel)
             inner = w - 2 * t - 0.03
             for z, deep in ((0.03, 0.1), (0.2, 0.075)):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
+from sailenv_content.families.draping import fringe
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.materials import FABRICS, PieceMaterial, fabric
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
@@ -16,15 +17,6 @@ from sailenv_ros.types.model import Mesh
 __all__ = ["FAMILY"]
 
 TILE_M = 0.06
-
-
-def _fringe(b: PieceBuilder, v: Values, ends: np.ndarray, out: tuple[float, float]) -> None:
-    """Add threads at points (N, 3) that lie down outwards."""
-    for point in ends:
-        aside = b.between(-0.006, 0.006)
-        tip = point + np.array([out[0] * v.fringe + aside, out[1] * v.fringe + aside, 0.0])
-        path = [point, (point + tip) / 2 + (0.0, 0.0, 0.001), (tip[0], tip[1], 0.003)]
-        b.form(v.cloth, swept(path, 0.003, sides=4), collides="none", volume=1e-7)
 
 
 def _folded(b: PieceBuilder, v: Values) -> None:
@@ -44,7 +36,7 @@ def _folded(b: PieceBuilder, v: Values) -> None:
         ys = np.linspace(-0.46 * w, 0.46 * w, int(w / 0.02))
         ends = np.stack([np.full(len(ys), sign * d / 2), ys, np.full(len(ys), low)], -1)
         if v.fringe and sign > 0:
-            _fringe(b, v, ends, (sign, 0.0))
+            fringe(b, v.cloth, ends, (sign * v.fringe, 0.0))
 
 
 def _rolled(b: PieceBuilder, v: Values) -> None:
@@ -121,7 +113,7 @@ def _spread(b: PieceBuilder, v: Values) -> None:
         for y in np.linspace(-0.49 * w, 0.49 * w, int(w / 0.025)):
             near = rim[np.argmin(np.abs(rim[:, 1] - y))]
             ends.append([near[0], y, near[2] + 0.5 * v.thick])
-        _fringe(b, v, np.array(ends), (sign, 0.0))
+        fringe(b, v.cloth, np.array(ends), (sign * v.fringe, 0.0))
 
 
 def _heap(b: PieceBuilder, v: Values) -> None:

@@ -9,7 +9,7 @@ from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.drums import STEEL, drum, front_with_hole
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import handle
-from sailenv_content.families.hardware import SEAL
+from sailenv_content.families.hardware import LID_CLOSE, SEAL
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.lathe import closed_ring, sleeve, vessel
 from sailenv_content.families.materials import PieceMaterial, glass, metal, paint
@@ -208,7 +208,13 @@ def _top_loader(b: PieceBuilder, v: Values) -> None:
     knob_row(b, v.knob, -d / 2 + 0.0605, h + 0.55 * tall, knobs, radius=0.028)
     hinge_x = -d / 2 + 0.106
     with b.hinge(
-        "lid", "lid", at=(hinge_x, 0, h + 0.012), axis=(0, -1, 0), opens_deg=78.0, friction=1.2
+        "lid",
+        "lid",
+        at=(hinge_x, 0, h + 0.012),
+        axis=(0, -1, 0),
+        opens_deg=78.0,
+        friction=1.2,
+        soft_close=LID_CLOSE,
     ):
         reach, wide = d / 2 - 0.02 - hinge_x, 2 * radius + 0.02
         at = (hinge_x + reach / 2, 0.0, h + 0.012)

@@ -94,6 +94,9 @@ class CompanionRule(_RuleModel):
     aside: Metres = Field(default=(0.0, 0.0), description="off the middle, to its left [m]")
     turn: Turn = Field(default=(0.0, 0.0), description="besides facing the other piece [deg]")
     ahead: _Length = Field(default=0.0, description="for `under`: off the middle, to its front [m]")
+    in_view: Annotated[bool, Switch()] = Field(
+        default=False, description="true: what is between them is part of the two, or nothing"
+    )
 
 
 class BeforeWindowRule(_RuleModel):
@@ -119,7 +122,10 @@ class FurnitureRule(_RuleModel):
         default="wall", description="where it stands or hangs"
     )
     gap: Metres = Field(default=(0.0, 0.0), description="between its back and the wall [m]")
-    height: Metres | None = optional("of what hangs, above the floor [m]")
+    height: Metres | None = optional("of the foot of what hangs, above the floor [m]")
+    eye_level: Metres | None = optional(
+        "of the middle of what hangs, above the floor; it keeps off its neighbours [m]"
+    )
     scale: Factor = Field(default=(1.0, 1.0), description="of its size")
     turn: Turn = Field(default=(0.0, 0.0), description="besides facing into the room [deg]")
     static: Annotated[bool, Switch()] = Field(default=True, description="false for what can fall")
@@ -139,6 +145,11 @@ class FurnitureRule(_RuleModel):
         default="up", description="whether the lamp's light is above or below what glows of it"
     )
 
+    @property
+    def hangs(self) -> bool:
+        """Whether a wall carries it."""
+        return self.height is not None or self.eye_level is not None
+
 
 class ThingRule(_RuleModel):
     """An object that lies or stands on a piece of furniture."""
@@ -154,6 +165,9 @@ class ThingRule(_RuleModel):
     scale: Factor = Field(default=(1.0, 1.0), description="of its size")
     static: Annotated[bool, Switch()] = Field(default=False, description="true: never moves")
     highest: _Length | None = optional("where it may lie, above the piece's base [m]")
+    hob: Annotated[bool, Switch()] = Field(
+        default=False, description="true: x and y are those of the piece's hob, if it has one"
+    )
     inset: _Length = Field(default=0.0, description="in a setting: from the table's edge [m]")
     aside: _Length = Field(default=0.0, description="in a setting: to the right of the guest [m]")
     light: Strength | None = optional("of a lamp that is on [W/sr]")

@@ -25,6 +25,7 @@ from sailenv_ros.assets.arranging import shape_points, support_heights
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.errors import AssetError, SceneError, UnknownName
+from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
 from sailenv_ros.scene.spec import SceneSpec
 from sailenv_ros.simulation import Simulation
@@ -34,6 +35,7 @@ from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.build import build_world
 from sailenv_ros.world.kinematics import link_pose
 from sailenv_ros.world.world import World
+from tests.support.tiny_scenes import Thing, camera_at, snapshot_of
 
 LIBRARY = AssetLibrary([FamilySource()])
 
@@ -118,6 +120,17 @@ def test_a_piece_is_whole(family: str, style: str, pieces: dict[tuple[str, str],
 @pytest.mark.parametrize("family", ["floor_lamp", "table_lamp", "ceiling_lamp"])
 def test_lamps_glow_by_their_lights(family: str, pieces: dict[tuple[str, str], Piece]) -> None:
     assert all(pieces[family, style].asset.model.is_lamp for style in family_named(family).styles)
+
+
+@pytest.mark.parametrize("style", list(family_named("mirror").styles))
+def test_mirrors_mirror(style: str) -> None:
+    """Each shows what stands before it, in one flat face at least."""
+    for seed in range(5):
+        asset = made("mirror", style, seed).asset
+        models = [asset.model, *(part.asset.model for part in asset.moving)]
+        things = [Thing(model, Pose((2.0, 0.0, -0.5), (0.0, 0.0, 1.0, 0.0))) for model in models]
+        mirrors = [FlatMirrors().seen(snapshot_of([thing]), camera_at()) for thing in things]
+        assert any(mirrors)
 
 
 def open_edges(positions: np.ndarray, triangles: np.ndarray) -> int:
@@ -331,6 +344,13 @@ def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
         ("oven~cooker:3", "door", 1.5, 0.06, 0.0),
         ("washbasin~pedestal:3", "lever", 0.6, 0.2, np.pi * 17.5 / 180),
         ("fridge~double:3", "door", 1.5, 0.06, 0.0),
+        ("shoe_rack~tipping:3", "flap 1", 0.55, 0.3, 0.0),
+        ("blind~shutters:3", "left leaf", 1.5, 0.06, 0.0),
+        ("box~chest:3", "lid", 1.6, 0.9, 0.0),
+        ("box~trunk:3", "lid", 1.5, 0.9, 0.0),
+        ("box~jewels:3", "lid", 1.6, 0.9, 0.0),
+        ("bin~pedal:3", "lid", 1.3, 0.9, 0.0),
+        ("washing_machine~top:3", "lid", 1.3, 0.9, 0.0),
     ],
 )
 def test_what_opens_shuts_or_clicks_by_itself(
