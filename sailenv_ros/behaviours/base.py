@@ -43,10 +43,8 @@ MAX_SPEED_M_S = 10.0
 """No behaviour drives a body faster: in one step it then covers less than half a thin wall."""
 
 
-# Made once: of what joints do, a state is asked for in each step.
+# Made once: of a joint a state is asked for in each step.
 _UNIT_INERTIA, _NO_PLANES, _IN_ORIGIN = np.ones(3), np.zeros((0, 4)), np.zeros(3)
-for _shared in (_UNIT_INERTIA, _NO_PLANES, _IN_ORIGIN):
-    _shared.flags.writeable = False
 
 
 class BehaviourParameters(BaseModel):
@@ -66,10 +64,7 @@ class BehaviourParameters(BaseModel):
 
     def to_json(self) -> dict[str, Any]:
         """Return the parameters as a scene file would write them, defaults too."""
-        dumped = self.model_dump(exclude_none=True)
-        if not self.start:
-            del dumped["start"]
-        return dumped
+        return self.model_dump(exclude_none=True, exclude=None if self.start else {"start"})
 
     @property
     def duration_s(self) -> float | None:

@@ -256,6 +256,9 @@ class BodyTable:
             self.joints.require_nothing_on(old, "to be renamed")
         if not placement.static and placement.joint is None:
             self.joints.require_nothing_on(old, "that moves freely")
+        if old.repaint(placement):
+            self._pieces = None
+            return
         new = old.rebuilt(placement)
         self.wake_neighbours(old)
         self._bodies[instance_id] = new

@@ -8,7 +8,7 @@ import os
 import tempfile
 import threading
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -87,9 +87,10 @@ def build_collision(
         part["collisionFrameOrientation"] = part.pop("orientation", _UNTURNED)
         part["shapeType"] = part.pop("type")
         return int(client.createCollisionShape(**part))
-    with _hull_folder() as folder:
-        if len(parts) > MAX_SHAPES:
-            parts = _joined(client, parts, name)
+    if len(parts) > MAX_SHAPES:
+        parts = _joined(client, parts, name)
+    has_hulls = any("vertices" in part for part in parts)
+    with _hull_folder() if has_hulls else nullcontext(Path()) as folder:
         files = [_hull_file(folder, part, name) for part in parts]
         return int(client.createCollisionShapeArray(**_as_arrays(parts), fileNames=files))
 

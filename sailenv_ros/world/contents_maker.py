@@ -47,7 +47,6 @@ class ContentsMaker:
     environment : Environment
     baked : BakedLight or None
         Light that was computed beforehand; these three count from `renew` on.
-    current : SceneContents
     """
 
     def __init__(
@@ -73,11 +72,19 @@ class ContentsMaker:
         self._next_revision = next_revision
         self._lit_by: Mapping[int, tuple[str, ...]] = {}
         self._lamps_of: tuple[object, ...] | None = None
-        self.current = self._made()
+        self._current: SceneContents | None = None
+        self.renew()
+
+    @property
+    def current(self) -> SceneContents:
+        """The contents now: the same object until something of them is changed."""
+        if self._current is None:
+            self._current = self._made()
+        return self._current
 
     def renew(self) -> None:
-        """Make the contents again, after something of them was changed."""
-        self.current = self._made()
+        """Count a change of something of them; they are made again when they are asked for."""
+        self._revision, self._current, self._lamps_of = self._next_revision(), None, None
 
     def forget_charts(self, ids: Collection[int]) -> None:
         """Take the baked light off instances whose surfaces are others now."""
@@ -98,15 +105,15 @@ class ContentsMaker:
         if found != self._lit_by:
             self._lit_by = found
             drawn = tuple(self.drawn(piece) for piece in self._bodies.pieces)
-            self.current = replace(self.current, instances=drawn)
+            self._current = replace(self.current, instances=drawn)
 
     def _made(self) -> SceneContents:
-        pieces, self._lamps_of = self._bodies.pieces, None
+        pieces = self._bodies.pieces
         self._lit_by = lit_by(pieces, self._bodies.world_from_body(), self.lights)
         return SceneContents(
             scene=self._scene,
             epoch=self._epoch,
-            revision=self._next_revision(),
+            revision=self._revision,
             instances=tuple(self.drawn(piece) for piece in pieces),
             categories=self._categories,
             lights=self.lights,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
@@ -133,6 +134,12 @@ def boxes_mesh(boxes: Iterable[Box], *, chamfer_m: float = 0.0) -> Mesh:
     chamfer_m : float
         Width of what is cut off; at most a third of a box's shortest side is [m].
     """
+    return _boxes_mesh(tuple(boxes), chamfer_m)
+
+
+@lru_cache(maxsize=256)
+def _boxes_mesh(boxes: tuple[Box, ...], chamfer_m: float) -> Mesh:
+    # Who paints a wall has all of the room made again, in which nothing else differs.
     faces = Faces()
     for box in boxes:
         _add_box(faces, box, chamfer_m)

@@ -25,7 +25,7 @@ DROPPED_BITS = 2
 """Last bits of half-precision light that are left out: they are below the noise of its rays."""
 
 MOST_BYTES = 2**30
-"""Of an array: what a stranger gives may claim any size, and deflate zeros to little."""
+"""Of an array: an untrusted file may claim any size, and deflate zeros to little."""
 
 _INTEGERS = {1: np.uint8, 2: np.uint16, 4: np.uint32, 8: np.uint64}
 _SIGNED = {1: np.int8, 2: np.int16, 4: np.int32, 8: np.int64}

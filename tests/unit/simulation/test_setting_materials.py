@@ -106,6 +106,39 @@ def test_shape_place_id_and_past_stay(core: SynchronousSimulation) -> None:
         )
 
 
+@pytest.mark.parametrize("name", ["table", "floor", "north wall"])
+def test_paint_is_nothing_to_physics(core: SynchronousSimulation, name: str) -> None:
+    """What stands still keeps its body in the engine; the engine takes a step as if unpainted."""
+    (body,) = (one for one in core.world.bodies if one.placement.name == name)
+    number, asset = body.bullet_id, body.placement.asset
+    core.set_material(name, colour="#102030")
+    (same,) = (one for one in core.world.bodies if one.placement.name == name)
+    assert same is body
+    assert body.bullet_id == number
+    assert body.placement.asset is not asset
+    assert painted(core, name)[0]["colour"] == "#102030"
+
+
+def test_another_shape_is_another_body(core: SynchronousSimulation) -> None:
+    (table,) = (one for one in core.world.bodies if one.placement.name == "table")
+    core.change_object("table", scale=0.5)
+    (changed,) = (one for one in core.world.bodies if one.placement.name == "table")
+    assert changed is not table
+    assert changed.bullet_id != table.bullet_id
+
+
+def test_each_change_counts_whether_or_not_somebody_looks(core: SynchronousSimulation) -> None:
+    def steps(*, looks: bool) -> int:
+        first = core.world.contents.revision
+        for name in ("floor", "table"):
+            core.set_material(name, roughness=0.3 if looks else 0.4)
+            assert not looks or core.world.contents.revision > first
+        return core.world.contents.revision - first
+
+    assert steps(looks=False) == steps(looks=True)
+    assert core.world.snapshot().contents is core.world.contents
+
+
 @pytest.mark.parametrize("name", ["door 1", "window 1", "curtains 1", "skirting"])
 def test_boards_and_openings_take_a_colour(core: SynchronousSimulation, name: str) -> None:
     core.set_material(name, colour="#112233")
