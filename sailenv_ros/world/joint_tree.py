@@ -74,17 +74,18 @@ class JointTree:
         self._driven: set[int] = set()
         self._was_driven: set[int] = set()
         self._last = [(0.0, 0.0)] * len(self._links)
+        self._moves = tuple(link.joint.spec.moves for link in self._links)
         self._moving = tuple(
             (number, number - self._shift, link.joint.spec.bounds)
             for number, link in enumerate(self._links)
-            if link.joint.spec.moves
+            if self._moves[number]
         )
         self._known_at = -1
         self.is_driven, self._version = False, 0
         self.bullet_id = build_tree(client, self._links, world_from_rest)
         for number, link in enumerate(self._links):
             set_dynamics(client, self.bullet_id, self.link_of(number), link)
-            if link.joint.spec.moves:
+            if self._moves[number]:
                 self.set(number, link.position, link.velocity)
             self.release(number)
         if self._is_free:
@@ -129,8 +130,7 @@ class JointTree:
         PhysicsError
             If it is no longer finite.
         """
-        link = self._links[number]
-        if not link.joint.spec.moves:
+        if not self._moves[number]:
             return 0.0, 0.0
         if number in self._rolled:
             return self._rolled[number]
@@ -320,6 +320,6 @@ class JointTree:
             self.wake()
 
     def _motor(self, number: int, velocity: float, force: float) -> None:
-        if self._links[number].joint.spec.moves:
+        if self._moves[number]:
             link = self.link_of(number)
             tree_motors.velocity_motor(self._client, self.bullet_id, link, velocity, force)

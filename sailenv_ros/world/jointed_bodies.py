@@ -70,6 +70,7 @@ class JointedBody(Body):
     def __init__(self, client: BulletClient, placement: Placement) -> None:
         assert placement.joint is not None
         self.joint: JointPlacement = placement.joint
+        self._free = placement.joint.spec.type == "free"
         self.tree: JointTree | None = None
         self.parent: Body | None = None
         self._number = 0
@@ -122,7 +123,7 @@ class JointedBody(Body):
     @property
     def is_free(self) -> bool:
         """True if nothing holds it: it is the first of its tree, and moves as physics has it."""
-        return self.joint.spec.type == "free"
+        return self._free
 
     def joint_state(self) -> tuple[float, float]:
         """Return position and velocity of its joint [rad, rad/s] or [m, m/s]."""
@@ -183,8 +184,10 @@ class JointedBody(Body):
 
     def origin_velocity(self, world_from_body: NDArray[np.float64]) -> tuple[Vector3, Vector3]:
         """Return the velocity of the body frame's origin [m/s] and the angular one [rad/s]."""
-        linear, angular = self.twist()
-        (vx, vy, vz), (wx, wy, wz) = linear.tolist(), angular.tolist()
+        twist = self.twist()
+        if twist is _STILL:  # as most are
+            return STANDING
+        (vx, vy, vz), (wx, wy, wz) = (part.tolist() for part in twist)
         return (vx, vy, vz), (wx, wy, wz)
 
     def described_joint(self, instance_id: int) -> JointState | None:
