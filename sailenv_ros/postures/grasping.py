@@ -22,8 +22,8 @@ __all__ += ["with_fingers"]
 Doubles = NDArray[np.float64]
 Side = Literal["L", "R"]
 
-_THICK = 0.19
-"""From a finger's bones to the skin inside, over the palm's length."""
+_THICK = (0.125, 0.17, 0.19, 0.155, 0.135)
+"""From a finger's bones to the skin inside, over the palm's length; from the thumb on."""
 
 _TIP = 0.85
 """Length of the last bone of a finger, over that of the bone before it."""
@@ -71,22 +71,23 @@ class _Closing:
 
     Attributes
     ----------
-    opposes : (3,) float64
-        Axis of the turn of its first joint, and `opposed_deg` by how much.
+    opposed : (3, 3) float64
+        Turn of all its joints before they bend.
     axis : (3,) float64
         About which its joints bend.
-    bends_deg : (3,) float64
+    opened_deg, bends_deg : (3,) float64
+        How far each bends when open, and when closed.
     """
 
-    opposes: Doubles
-    opposed_deg: float
+    opposed: Doubles
     axis: Doubles
+    opened_deg: Doubles
     bends_deg: Doubles
 
     def turns(self, share: float) -> list[Doubles]:
         """Return the turns of its joints from the hand, closed by a share."""
-        first = about(self.opposes, share * self.opposed_deg)
-        return [about(self.axis, share * degrees) @ first for degrees in np.cumsum(self.bends_deg)]
+        bends = self.opened_deg + share * (self.bends_deg - self.opened_deg)
+        return [about(self.axis, degrees) @ self.opposed for degrees in np.cumsum(bends)]
 
 
 _known: WeakKeyDictionary[Rig, dict[Grip, dict[int, _Closing]]] = WeakKeyDictionary()
@@ -126,8 +127,11 @@ def grip_offset(rig: Rig, grip: Grip) -> Doubles:
     """Return (3,): from the wrist to the middle of what is held, at rest [m]."""
     along, _, palm, length = hand_at_rest(rig, grip.side)
     wrist = rig.head(f"wrist.{grip.side}")
-    knuckles = [(rig.head(f"finger{n}-1.{grip.side}") - wrist) @ palm for n in range(2, 6)]
-    away = grip.half_m + _THICK * length + float(max(knuckles))
+    inside = [
+        (rig.head(f"finger{n}-1.{grip.side}") - wrist) @ palm + _THICK[n - 1] * length
+        for n in range(2, 6)
+    ]
+    away = grip.half_m + float(max(inside))
     return np.asarray(1.05 * length * along + away * palm)
 
 
@@ -145,13 +149,13 @@ def finger_places(rig: Rig, side: Side, finger: int, turns: list[Doubles]) -> Do
     return np.stack(found)
 
 
-def away_from_thing(rig: Rig, grip: Grip, places: Doubles) -> Doubles:
+def away_from_thing(rig: Rig, grip: Grip, finger: int, places: Doubles) -> Doubles:
     """Return (...): from a finger's skin around places to what is held; negative within it [m].
 
     Parameters
     ----------
     places : (..., 3) float64
-        Of a finger's middle, in the hand at rest [m].
+        Of its bones, in the hand at rest [m].
     """
     along, thumb, palm, length = hand_at_rest(rig, grip.side)
     own = places - rig.head(f"wrist.{grip.side}") - grip_offset(rig, grip)
@@ -160,7 +164,7 @@ def away_from_thing(rig: Rig, grip: Grip, places: Doubles) -> Doubles:
     level = np.hypot(beyond, own @ palm) - min(grip.half_m, max(grip.half_length_m, 1e-4))
     above = np.maximum(np.abs(own @ thumb) - grip.half_height_m, 0.0)
     outside = np.where(above > 0.0, np.hypot(np.maximum(level, 0.0), above), level)
-    return np.asarray(outside - _THICK * length)
+    return np.asarray(outside - _THICK[finger - 1] * length)
 
 
 def _closings(rig: Rig, grip: Grip) -> dict[int, _Closing]:
@@ -173,7 +177,8 @@ def _closings(rig: Rig, grip: Grip) -> dict[int, _Closing]:
 
 def _finger(rig: Rig, grip: Grip, finger: int) -> _Closing:
     axis = curl_axis(rig, grip.side, finger)
-    opened = _Closing(axis, 0.0, axis, np.array(_BENDS_DEG[0]))
+    bends = np.array(_BENDS_DEG[0])
+    opened = _Closing(np.eye(3), axis, bends, bends)
     return _closed(rig, grip, finger, opened, np.array(_BENDS_DEG[1]))
 
 
@@ -190,7 +195,8 @@ def _thumb(rig: Rig, grip: Grip) -> _Closing:
         turn, angle = np.cross(bone, way), float(np.degrees(np.arccos(bone @ way)))
         bends = np.cross(way, to_middle - (to_middle @ upwards) * upwards)
         turn, bends = (axis / max(float(np.linalg.norm(axis)), 1e-9) for axis in (turn, bends))
-        opened = _Closing(turn, angle, bends, np.array(_THUMB_BENDS_DEG[0]))
+        straight = np.array(_THUMB_BENDS_DEG[0])
+        opened = _Closing(about(turn, angle), bends, straight, straight)
         away = float(_away(rig, grip, 1, opened).min())
         if away > clear + 1e-6:
             best, clear = opened, away
@@ -203,7 +209,7 @@ def _thumb(rig: Rig, grip: Grip) -> _Closing:
 def _away(rig: Rig, grip: Grip, finger: int, closing: _Closing) -> Doubles:
     """Return (3,): how far a finger's bones are from what is held [m]."""
     places = finger_places(rig, grip.side, finger, closing.turns(1.0))
-    return np.asarray(away_from_thing(rig, grip, places).min(axis=1))
+    return np.asarray(away_from_thing(rig, grip, finger, places).min(axis=1))
 
 
 def _closed(rig: Rig, grip: Grip, finger: int, opened: _Closing, most: Doubles) -> _Closing:

@@ -43,7 +43,7 @@ def fingers(person: Rig, grip: Grip, closed: float) -> dict[int, list[np.ndarray
 def away(person: Rig, grip: Grip, closed: float) -> dict[int, float]:
     """How far each finger's skin is from the thing [m]."""
     return {
-        n: float(away_from_thing(person, grip, finger_places(person, grip.side, n, turns)).min())
+        n: float(away_from_thing(person, grip, n, finger_places(person, grip.side, n, turns)).min())
         for n, turns in fingers(person, grip, closed).items()
     }
 
