@@ -105,7 +105,7 @@ def lying_posture(rig: Rig, ground: Ground, hips: Doubles, head_way: Doubles) ->
     chest = posture.turns["spine01"]
     posture = _raised(rig, ground, posture, chest, _CHEST[1:], ("spine01",), (-30.0, 0.0))
     chest = posture.turns["spine01"]
-    posture = _raised(rig, ground, posture, chest, _HEAD, ("neck01", *_HEAD), (-60.0, 60.0))
+    posture = _raised(rig, ground, posture, chest, _HEAD, ("neck01", *_HEAD), (-70.0, 60.0))
     for side, sign in SIDES:
         outwards = level @ turn_about("z", 18.0 * sign)
         posture = _leg_laid(rig, ground, posture, outwards, side)
