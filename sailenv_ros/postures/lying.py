@@ -39,6 +39,12 @@ _CHEST = (
     "neck01",
 )
 _HIPS = ("root", "spine05", "spine04", "spine03")
+_STRETCHES_DEG = (28.0, 16.0, 4.0, -8.0)
+"""Of a foot, from the first on until its leg rests [deg]."""
+
+_SAME_M = 0.001
+"""Difference in height that is no reason to stretch a foot less [m]."""
+
 _HALVINGS = 12
 
 
@@ -83,8 +89,6 @@ def lying_posture(rig: Rig, ground: Ground, hips: Doubles, head_way: Doubles) ->
     level = np.stack([up, np.cross(head, up), head], axis=1)
     turns: dict[str, Doubles] = {"root": level}
     for side, sign in SIDES:
-        outwards = turn_about("z", 18.0 * sign)
-        turns[f"foot.{side}"] = level @ outwards @ turn_about("y", 28.0)
         turns[f"shoulder01.{side}"] = level @ turn_about("x", -9.0 * sign)
     offset = level @ (rig.heads[0] - figure.hips)
 
@@ -95,11 +99,16 @@ def lying_posture(rig: Rig, ground: Ground, hips: Doubles, head_way: Doubles) ->
     depth = depths(ground, placed(high))[_chosen(rig, ground, [*_HIPS, *_sided("upperleg01")])]
     posture = placed(high + float(depth.max()) - SINK_M)
     # From the hips outwards: what one part lies upon sets where the next begins.
-    posture = _raised(rig, ground, posture, _CHEST, ("spine03", "spine02", "spine01"), (0.0, 40.0))
-    posture = _raised(rig, ground, posture, _HEAD, ("neck01", *_HEAD), (-32.0, 60.0))
-    for side, _ in SIDES:
-        legs = tuple(f"{bone}.{side}" for bone in _LEGS)
-        posture = _raised(rig, ground, posture, legs, legs[:2], (-10.0, 25.0), share_last=1.0)
+    spine = ("spine03", "spine02", "spine01")
+    posture = _raised(rig, ground, posture, level, _CHEST, spine, (-12.0, 40.0))
+    # Where a pillow's end raises the loins, the shoulders sink behind it.
+    chest = posture.turns["spine01"]
+    posture = _raised(rig, ground, posture, chest, _CHEST[1:], ("spine01",), (-30.0, 0.0))
+    chest = posture.turns["spine01"]
+    posture = _raised(rig, ground, posture, chest, _HEAD, ("neck01", *_HEAD), (-70.0, 60.0))
+    for side, sign in SIDES:
+        outwards = level @ turn_about("z", 18.0 * sign)
+        posture = _leg_laid(rig, ground, posture, outwards, side)
     for side, sign in SIDES:
         posture = _hand_on_belly(rig, ground, posture, level, side, sign)
     turned = dict(posture.turns)
@@ -167,36 +176,35 @@ def _raised(
     rig: Rig,
     ground: Ground,
     posture: Posture,
+    carrier: Doubles,
     resting: Collection[str],
     bending: tuple[str, ...],
     limits_deg: tuple[float, float],
-    share_last: float | None = None,
 ) -> Posture:
     """Return a posture in which joints bend as far as a part of the body needs to rest.
 
     Parameters
     ----------
+    carrier : (3, 3) float64
+        From whose turn they bend.
     resting : collection of str
         Joints whose skin rests.
     bending : tuple of str
-        Joints that share the angle, from the first to the last.
+        Joints that share the angle, from the first to the last; legs bend at the hip alone.
     limits_deg : (2,) tuple of float
-        Of the angle [deg]: the part is lowest at the first, legs are lowest at the last.
-    share_last : float or None
-        Given for legs, all of whose joints bend by the whole angle, downwards.
+        Of the angle [deg]: the part is lowest at the first.
     """
     chosen = _chosen(rig, ground, resting)
-    level = posture.turns["root"]
-    carrier = posture.turns.get("spine01", level) if share_last is None else level
     if not chosen.any():
         return posture
+    stiff = bending[0].startswith(_LEGS[0])
 
     def bent(degrees: float) -> Posture:
         turns = dict(posture.turns)
         for number, joint in enumerate(bending, start=1):
-            part = number / len(bending) if share_last is None else share_last
+            part = 1.0 if stiff else number / len(bending)
             turns[joint] = carrier @ turn_about("y", part * degrees)
-        if share_last is None and "spine01" in bending:
+        if "spine01" in bending:
             for side, sign in SIDES:
                 turns[f"shoulder01.{side}"] = turns["spine01"] @ turn_about("x", -9.0 * sign)
         return replace(posture, turns=turns)
@@ -204,13 +212,30 @@ def _raised(
     def sinks(degrees: float) -> bool:
         return float(depths(ground, bent(degrees))[chosen].max()) > SINK_M
 
-    low, high = limits_deg if share_last is None else limits_deg[::-1]
+    low, high = limits_deg
     if not sinks(low):
         return bent(low)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if sinks(middle) else (low, middle)
     return bent(high)
+
+
+def _leg_laid(rig: Rig, ground: Ground, posture: Posture, outwards: Doubles, side: str) -> Posture:
+    """Return a posture whose leg rests: its foot stretches as far as there is room beyond it."""
+    legs = tuple(f"{bone}.{side}" for bone in _LEGS)
+    chosen = _chosen(rig, ground, legs[1:3])
+    found, best, level = posture, -np.inf, posture.turns["root"]
+    for stretch in _STRETCHES_DEG:
+        foot = outwards @ turn_about("y", stretch)
+        begin = replace(posture, turns={**posture.turns, legs[2]: foot})
+        laid = _raised(rig, ground, begin, level, legs, legs[:2], (25.0, -10.0))
+        depth = float(np.max(depths(ground, laid)[chosen], initial=-np.inf))
+        if depth > best + _SAME_M:
+            found, best = laid, depth
+        if best > 0.0:
+            break
+    return found
 
 
 def _hand_on_belly(

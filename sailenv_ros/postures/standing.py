@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from typing import Literal
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -13,11 +14,11 @@ from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.skeleton import turn_about
 from sailenv_ros.types.rig import Rig
 
-__all__ = ["SIDES", "breathing", "hands_at_ease", "hanging_arms", "looking"]
+__all__ = ["SIDES", "about", "breathing", "curl_axis", "hands_at_ease", "hanging_arms", "looking"]
 
 Doubles = NDArray[np.float64]
 
-SIDES = (("L", 1.0), ("R", -1.0))
+SIDES: tuple[tuple[Literal["L", "R"], float], ...] = (("L", 1.0), ("R", -1.0))
 
 _DROP_DEG = 9.0
 
@@ -74,20 +75,25 @@ def _curls(rig: Rig) -> dict[str, dict[str, Doubles]]:
     """Return the turns of curled fingers from the forearm, by sides and joints."""
     if rig not in _known:
         found: dict[str, dict[str, Doubles]] = {}
-        for side, sign in SIDES:
+        for side, _ in SIDES:
             found[side] = {}
-            across = rig.head(f"finger2-1.{side}") - rig.head(f"finger5-1.{side}")
             for finger in range(1, 6):
-                along = rig.head(f"finger{finger}-2.{side}") - rig.head(f"finger{finger}-1.{side}")
-                axis = across - (across @ along) * along / (along @ along)
-                axis /= np.linalg.norm(axis)
+                axis = curl_axis(rig, side, finger)
                 turn = np.eye(3)
                 for joint, curl in enumerate(_CURL_DEG, start=1):
                     degrees = curl * (0.4 if finger == 1 else 0.7 + 0.1 * finger)
-                    turn = turn @ _about(axis, sign * degrees)
+                    turn = turn @ about(axis, degrees)
                     found[side][f"finger{finger}-{joint}.{side}"] = turn
         _known[rig] = found
     return _known[rig]
+
+
+def curl_axis(rig: Rig, side: str, finger: int) -> Doubles:
+    """Return (3,): the unit axis about which a finger curls inwards, at rest."""
+    across = rig.head(f"finger2-1.{side}") - rig.head(f"finger5-1.{side}")
+    along = rig.head(f"finger{finger}-2.{side}") - rig.head(f"finger{finger}-1.{side}")
+    axis = across - (across @ along) * along / (along @ along)
+    return np.asarray((-1.0 if side == "L" else 1.0) * axis / np.linalg.norm(axis))
 
 
 def breathing(time_s: float, seed: int) -> float:
@@ -105,7 +111,8 @@ def looking(chest: Doubles, look: Look) -> dict[str, Doubles]:
     return {"neck02": share(0.3), "neck03": share(0.55), "head": share(1.0)}
 
 
-def _about(axis: Doubles, degrees: float) -> Doubles:
+def about(axis: Doubles, degrees: float) -> Doubles:
+    """Return the rotation about a unit axis by an angle [deg]."""
     angle = np.radians(degrees)
     x, y, z = axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

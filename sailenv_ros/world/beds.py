@@ -101,9 +101,10 @@ class Lane:
             u * ((1.0 - v) * grid[row + 1, column] + v * grid[row + 1, column + 1])
         )
         # Beside an edge the mean of a surface and of nothing is neither.
+        nearest = grid[row + (u > 0.5), column + (v > 0.5)]
         found[there] = np.where(
             np.minimum.reduce([grid[row + i, column + k] for i in (0, 1) for k in (0, 1)]) < 0.0,
-            np.where(grid[row + (u > 0.5), column + (v > 0.5)] < 0.0, -np.inf, found[there]),
+            np.where(nearest < 0.0, -np.inf, nearest),
             found[there],
         )
         return found - float(matrix[2, 3])
@@ -236,7 +237,8 @@ def _lane(
     beyond = head - ((last - first + 1) * _STEP_M + np.array([0.04, 0.1]))[:, None] * way
     cells = np.rint((beyond - [x[0], y[0]]) / _STEP_M).astype(np.int64)
     inside = ((cells >= 0) & (cells < heights.shape)).all(axis=1)
-    open_end = bool((heights[tuple(cells[inside].T)] < profile[-1] + 0.02).all())
+    # Not by the last step alone, where a mattress is round.
+    open_end = bool((heights[tuple(cells[inside].T)] < profile[-6:].max() + 0.02).all())
     near = profile[: round(0.9 / _STEP_M)]
     raised = near > near[15:].min(initial=np.inf) + 0.035
     start = int(np.argmax(raised)) if raised.any() else 0

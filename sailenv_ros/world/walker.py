@@ -109,7 +109,9 @@ class Walker(Stepper):
         posture = self._gait.posture(
             self._actor.rig, now.moment, now.time_s, seed=now.seed, look=now.look
         )
-        return posture if self.held is None else with_carrying_arm(self._actor.rig, posture)
+        if self.held is None:
+            return posture
+        return with_carrying_arm(self._actor.rig, posture, self.held.grip)
 
     # -- what behaviours tell it (see behaviours.person.Person) --------------------------------
 

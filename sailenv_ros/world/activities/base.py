@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
@@ -11,8 +12,8 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours.person import Activity
 from sailenv_ros.postures.figure import Figure, figure_of
 from sailenv_ros.postures.footsteps import Moment
+from sailenv_ros.postures.grasping import Grip, Side
 from sailenv_ros.postures.look import Look
-from sailenv_ros.postures.reaching import Grip
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.types.model import Asset
 from sailenv_ros.types.rig import Rig
@@ -21,6 +22,9 @@ __all__ = ["Actor", "Held", "Instant", "Place", "SpotActivity"]
 
 Doubles = NDArray[np.float64]
 Place = tuple[float, float]
+
+_AHEAD = 0.4
+"""How far beside the body something is still straight ahead, over half the width of the hips."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,6 +56,18 @@ class Actor:
     def figure(self) -> Figure:
         """Its measures, before the scale."""
         return figure_of(self.rig)
+
+    def hands(self, goal: Doubles) -> tuple[Side, Side]:
+        """Return the hand that is nearer to a place of the body frame, and the other.
+
+        Straight ahead it is the right one, of one in ten people the left.
+        """
+        beside = float(goal[1])
+        if abs(beside) < _AHEAD * self.figure.half_width_m:
+            left = zlib.crc32(self.name.encode()) % 10 == 0
+        else:
+            left = beside > 0.0
+        return ("L", "R") if left else ("R", "L")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

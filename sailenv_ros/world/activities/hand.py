@@ -11,10 +11,13 @@ from sailenv_ros.postures.reaching import on_its_feet
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.world.activities.base import Actor, SpotActivity
 
-__all__ = ["REACH_S", "HandActivity"]
+__all__ = ["GRIP_S", "REACH_S", "HandActivity"]
 
 REACH_S = 1.2
 """Time of the hand's way there, and of the way back [s]."""
+
+GRIP_S = 0.2
+"""Time in which the hand closes or opens [s]."""
 
 
 class HandActivity(SpotActivity):
@@ -49,6 +52,10 @@ class HandActivity(SpotActivity):
         back = self._done_s - REACH_S - self._stays_s
         share = self._done_s / REACH_S if back < 0.0 else 1.0 - back / REACH_S
         return float(np.clip(share, 0.0, 1.0))
+
+    def _closed(self, begins_s: float) -> float:
+        """Return by which share fingers have closed that begin to at a time."""
+        return float(np.clip((self._done_s - begins_s) / GRIP_S, 0.0, 1.0))
 
     def _between(self, begin: Posture, reaches: Posture, share: float, moment: Moment) -> Posture:
         """Return the posture at a share of the way from one posture to another."""

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.postures.easing import smoother_step
 from sailenv_ros.postures.footsteps import Moment
-from sailenv_ros.postures.reaching import Grip, reaching_posture, with_carrying_arm
+from sailenv_ros.postures.grasping import Grip, Side, with_fingers
+from sailenv_ros.postures.reaching import reaching_posture, with_carrying_arm
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.world.activities.base import Actor, Held, Instant, Place
-from sailenv_ros.world.activities.hand import REACH_S, HandActivity
+from sailenv_ros.world.activities.hand import GRIP_S, REACH_S, HandActivity
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.surfaces import free_spots
@@ -26,14 +27,14 @@ __all__ = ["Putting", "Taking", "can_be_taken", "ways_to_put", "ways_to_take"]
 
 Doubles = NDArray[np.float64]
 
-_GRIP_S = 0.2
-"""Time in which the hand closes or opens [s]."""
-
 _HEAVIEST_KG, _WIDEST_M, _LONGEST_M = 4.0, 0.11, 0.45
 """Of what one hand takes: its mass, its width between palm and fingers, its longest side."""
 
 _FARTHEST_M = 0.72
 """From where one stands to what one takes, at most [m]."""
+
+_ALONGSIDE = 0.8
+"""Cosine from which a thing's longer side is along the fingers."""
 
 _ABOVE_M = 0.003
 """From which a thing is let go [m]."""
@@ -45,7 +46,7 @@ class _Handling(HandActivity):
     def __init__(
         self, actor: Actor, name: str, goal: Doubles, grip: Grip, feet: Place, yaw: float
     ) -> None:
-        super().__init__(actor, _GRIP_S)
+        super().__init__(actor, GRIP_S)
         self._goal, self._grip = goal, grip
         self.feet, self.yaw, self.piece = feet, yaw, name
         self._turn = np.eye(3)
@@ -58,35 +59,49 @@ class _Handling(HandActivity):
             own = invert(world_from_body)
             goal = (own[:3, :3] @ self._goal + own[:3, 3]) / self._actor.scale
             stands = walking_posture(self._actor.rig, moment, 0.0)
-            self._reaches = reaching_posture(self._actor.rig, stands, moment, goal, self._grip)
+            for side in self._hands(goal):
+                self._grip = self._grip.by(side)
+                self._reaches = reaching_posture(self._actor.rig, stands, moment, goal, self._grip)
+                if self._reaches is not None:
+                    break
         self._done_s += STEP_S
         return self._reaches is not None and self._goes_on
 
     @property
     def _gripped(self) -> bool:
-        return self._done_s >= REACH_S + 0.5 * _GRIP_S
+        return self._done_s >= REACH_S + 0.5 * GRIP_S
 
     def posture(self, now: Instant) -> Posture:
         """Return the posture, in the frame of the body."""
         rig = self._actor.rig
         stands = walking_posture(rig, now.moment, now.time_s, seed=now.seed, look=now.look)
-        begin = with_carrying_arm(rig, stands) if self._carries else stands
+        begin = with_carrying_arm(rig, stands, self._grip) if self._carries else stands
         if self._reaches is None:
             return begin
         share = smoother_step(self._share_of_time)
-        return self._between(begin, self._reaches, share, now.moment)
+        reaches = with_fingers(rig, self._reaches, self._grip, self._holds)
+        return self._between(begin, reaches, share, now.moment)
+
+    @abstractmethod
+    def _hands(self, goal: Doubles) -> tuple[Side, ...]:
+        """Return the hands that may reach for a place of the body frame, the first before."""
 
     @property
     @abstractmethod
     def _carries(self) -> bool:
         """Whether something is in the hand now."""
 
+    @property
+    @abstractmethod
+    def _holds(self) -> float:
+        """How far the fingers are closed where the hand is at the thing."""
+
 
 class Taking(_Handling):
     """A person who takes a thing; parameters as `_Handling`, and the thing."""
 
     def __init__(self, actor: Actor, body: Body, feet: Place, yaw: float) -> None:
-        grip = grip_of(body, actor.scale)
+        grip = grip_of(body, actor.scale, yaw)
         super().__init__(actor, body.placement.name, _middle(body), grip, feet, yaw)
         self._body = body
         self._held: Held | None = None
@@ -105,9 +120,16 @@ class Taking(_Handling):
             )
         return self._held
 
+    def _hands(self, goal: Doubles) -> tuple[Side, ...]:
+        return self._actor.hands(goal)
+
     @property
     def _carries(self) -> bool:
         return self._gripped
+
+    @property
+    def _holds(self) -> float:
+        return self._closed(REACH_S)
 
 
 class Putting(_Handling):
@@ -120,15 +142,30 @@ class Putting(_Handling):
         """Return what is in the hand now."""
         return None if self._gripped and self._reaches is not None else before
 
+    def _hands(self, goal: Doubles) -> tuple[Side, ...]:
+        return (self._grip.side,)
+
     @property
     def _carries(self) -> bool:
         return not self._gripped
 
+    @property
+    def _holds(self) -> float:
+        return 1.0 - self._closed(REACH_S)
 
-def grip_of(body: Body, scale: float) -> Grip:
-    """Return how a hand holds a thing: by its narrower level side."""
-    size = _size(body)
-    return Grip(half_m=0.5 * float(min(size[0], size[1])) / scale)
+
+def grip_of(body: Body, scale: float, yaw: float) -> Grip:
+    """Return how a hand of one who looks somewhere holds a thing: by its narrower level side."""
+    half = 0.5 * _size(body) / scale
+    narrow = int(half[1] < half[0])
+    across = np.array([-np.sin(yaw), np.cos(yaw)])
+    # A thing that is turned the other way is held as if it were round.
+    flat = abs(float(across @ body.world_from_body()[:2, narrow])) > _ALONGSIDE
+    return Grip(
+        half_m=float(half[narrow]),
+        half_length_m=float(half[1 - narrow] if flat else half[narrow]),
+        half_height_m=float(half[2]),
+    )
 
 
 def can_be_taken(body: Body) -> bool:

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import STEP_S, JointMotion, running_motion
 from sailenv_ros.postures.easing import smooth_step
 from sailenv_ros.postures.footsteps import Moment, moment_of, standing_feet
-from sailenv_ros.postures.reaching import Grip, reaching_posture
+from sailenv_ros.postures.grasping import Grip, Side, with_fingers
+from sailenv_ros.postures.reaching import reaching_posture
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose, invert
 from sailenv_ros.world.activities.base import Actor, Instant, Place
-from sailenv_ros.world.activities.hand import REACH_S, HandActivity
+from sailenv_ros.world.activities.hand import GRIP_S, REACH_S, HandActivity
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.kinematics import link_pose
@@ -40,7 +41,7 @@ _EDGE_M, _BEFORE_M = 0.05, 0.03
 
 _MOST_WAYS = 3
 _LOW_M, _HIGH_M = 0.55, 1.35
-_GRIP = Grip(half_m=0.01)
+_GRIP = Grip(half_m=0.01, half_length_m=0.01, half_height_m=0.1)
 _SHARES = (1.0, 0.8, 0.6, 0.45)
 """How far it is opened, where there is room for it."""
 
@@ -73,13 +74,22 @@ class Opening(HandActivity):
         Where one stands for it [m].
     yaw : float
         Which way one looks [rad].
+    side : {'L', 'R'}
+        The hand.
     """
 
     def __init__(
-        self, actor: Actor, body: Body, handle: Doubles, goal: float, feet: Place, yaw: float
+        self,
+        actor: Actor,
+        body: Body,
+        handle: Doubles,
+        goal: float,
+        feet: Place,
+        yaw: float,
+        side: Side,
     ) -> None:
         super().__init__(actor, _MOVE_S)
-        self._body, self._handle = body, handle
+        self._body, self._handle, self._grip = body, handle, _GRIP.by(side)
         self.feet, self.yaw, self.piece = feet, yaw, body.placement.name
         first = cast(Jointed, body).joint_state()[0]
         motion = JointMotion(first=first, position=goal, seconds=_MOVE_S)
@@ -108,12 +118,14 @@ class Opening(HandActivity):
         if self._first is None:
             return stands
         reaches = self._reached(stands, now.moment) or self._first
+        holds = self._closed(REACH_S - GRIP_S) - self._closed(REACH_S + _MOVE_S)
+        reaches = with_fingers(rig, reaches, self._grip, holds)
         return self._between(stands, reaches, smooth_step(self._share_of_time), now.moment)
 
     def _reached(self, stands: Posture, moment: Moment) -> Posture | None:
         matrix = self._own @ self._body.world_from_body()
         goal = (matrix[:3, :3] @ self._handle + matrix[:3, 3]) / self._actor.scale
-        return reaching_posture(self._actor.rig, stands, moment, goal, _GRIP)
+        return reaching_posture(self._actor.rig, stands, moment, goal, self._grip)
 
 
 def ways_to_open(actor: Actor, crowd: Crowd, size: BodySize, name: str) -> list[Opening]:
@@ -136,21 +148,29 @@ def ways_to_open(actor: Actor, crowd: Crowd, size: BodySize, name: str) -> list[
         for feet in crowd.places_beside(actor.name, size, (middle[0], middle[1]), 1.1, count=16):
             if _fits(np.asarray(feet), path[:, :2], axis[:2], box, joint):
                 yaw = float(np.arctan2(middle[1] - feet[1], middle[0] - feet[0]))
-                if all(_reaches(actor, feet, yaw, place) for place in path[::3]):
-                    found.append(Opening(actor, body, handle, goal, feet, yaw))
+                side = _reaching_hand(actor, feet, yaw, path[::3])
+                if side is not None:
+                    found.append(Opening(actor, body, handle, goal, feet, yaw, side))
             if len(found) >= _MOST_WAYS:
                 return found
     return found
 
 
-def _reaches(actor: Actor, feet: Place, yaw: float, place: Doubles) -> bool:
-    """Return whether the hand of one who stands somewhere gets to a place of the world."""
+def _reaching_hand(actor: Actor, feet: Place, yaw: float, path: Doubles) -> Side | None:
+    """Return the hand with which one who stands somewhere gets to (N, 3) places of the world."""
     c, s = float(np.cos(yaw)), float(np.sin(yaw))
-    x, y = place[0] - feet[0], place[1] - feet[1]
-    goal = np.array([c * x + s * y, c * y - s * x, place[2] - actor.floor_m]) / actor.scale
+    x, y = path[:, 0] - feet[0], path[:, 1] - feet[1]
+    goals = np.column_stack([c * x + s * y, c * y - s * x, path[:, 2] - actor.floor_m])
+    goals /= actor.scale
     moment = moment_of(standing_feet(0.0, 0.0, 0.0, actor.figure.stride))
     stands = walking_posture(actor.rig, moment, 0.0)
-    return reaching_posture(actor.rig, stands, moment, goal, _GRIP) is not None
+    for side in actor.hands(goals[0]):
+        grip = _GRIP.by(side)
+        if all(
+            reaching_posture(actor.rig, stands, moment, goal, grip) is not None for goal in goals
+        ):
+            return side
+    return None
 
 
 def _fits(feet: Doubles, path: Doubles, axis: Doubles, box: Doubles, joint: JointPlacement) -> bool:

@@ -36,15 +36,15 @@ def thing(
     )
 
 
-def room(*more: Placement) -> tuple[World, PersonBody]:
+def room(*more: Placement, name: str = "anna") -> tuple[World, PersonBody]:
     world = world_of(
-        person("anna", 0.8, 0.6),
+        person(name, 0.8, 0.6),
         placed("near", table(), 0.0, 0.0, static=True),
         placed("far", table(0.5), 2.0, 0.0, static=True),
         *more,
     )
     world.step(60)
-    return world, one(world, "anna")
+    return world, one(world, name)
 
 
 def body(world: World, name: str) -> Body:
@@ -101,6 +101,20 @@ def test_a_thing_is_taken_carried_and_put_down() -> None:
     assert abs(y) < 0.5
     assert mug.pose().matrix()[2, 2] > 0.999
     world.close()
+
+
+def test_one_in_ten_takes_things_with_the_left_hand() -> None:
+    for name, side in (("anna", "R"), ("eve", "L")):
+        world, who = room(thing(0.2, 0.2, 0.7), name=name)
+        assert who.walker.take("thing")
+        until_standing(world, who)
+        held, skeleton = who.walker.held, who.skeleton()
+        assert held is not None
+        assert held.grip.side == side
+        assert np.linalg.norm(in_hand(who) - middle(body(world, "thing"))) < 0.002
+        wrist = skeleton.joints[skeleton.joint_names.index(f"wrist.{side}")]
+        assert np.linalg.norm(wrist - middle(body(world, "thing"))) < 0.2
+        world.close()
 
 
 def test_feet_stand_while_a_hand_reaches_down() -> None:

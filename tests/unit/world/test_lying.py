@@ -176,3 +176,25 @@ def test_one_lies_along_a_couch() -> None:
     assert skin[:, 0].min() > -0.27  # before the back
     assert 0.40 < skin[:, 2].min() < 0.425
     world.close()
+
+
+def test_heels_rest_where_toes_reach_the_arm_of_a_couch() -> None:
+    couch = furniture(
+        "couch",
+        "couch",
+        [((0.9, 2.08, 0.42), (0.0, 0.0, 0.0))]
+        + [((0.9, 0.12, 0.75), (0.0, side * 0.98, 0.0)) for side in (1.0, -1.0)],
+    )
+    world = world_of(person("anna", 1.6, 0.0), placed("couch", couch, 0.0, 0.0, static=True))
+    anna = one(world, "anna")
+    world.step(1)
+    assert anna.walker.lie_on("couch")
+    go_on(world, anna, "lying")
+    skin = skin_on(world, anna, "couch")
+    assert np.abs(skin[:, 1]).max() < 0.92  # between the arms
+    names, joints = anna.skeleton().joint_names, anna.skeleton().joints
+    for side in "LR":
+        heel = joints[names.index(f"foot.{side}")]
+        near = np.linalg.norm(skin[:, :2] - heel[:2], axis=1) < 0.15
+        assert 0.40 < skin[near, 2].min() < 0.42
+    world.close()

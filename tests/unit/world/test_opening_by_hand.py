@@ -62,11 +62,13 @@ def test_one_opens_by_hand_and_closes(part: Placement, end: float) -> None:
             seen.append(anna.walker.activity)
             _, speed = moving.joint_state()
             if abs(speed) > 0.05:
-                wrist = anna.skeleton().joints[anna.skeleton().joint_names.index("wrist.R")]
+                names, joints = anna.skeleton().joint_names, anna.skeleton().joints
+                wrists = joints[[names.index(f"wrist.{side}") for side in "LR"]]
                 handle = anna.walker._does._handle  # type: ignore[union-attr]
                 matrix = moving.world_from_body()
                 held = matrix[:3, :3] @ handle + matrix[:3, 3]
-                farthest = max(farthest, float(np.linalg.norm(wrist - held)))
+                nearer = float(np.linalg.norm(wrists - held, axis=1).min())
+                farthest = max(farthest, nearer)
             if seen[-1] == "standing":
                 break
         assert seen[-2] == "reaching"
