@@ -13,6 +13,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from pydantic import ValidationError
 
+from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.authoring.room_rules.rule_models import (
     FurnitureFile,
     FurnitureRule,
@@ -175,6 +176,12 @@ def _asset_errors(
             )
 
 
+def _category_errors(loc: tuple[Any, ...], name: str | None) -> Iterator[Diagnostic]:
+    known = {category.name for category in load_categories().values()}
+    if name is not None and name not in known:
+        yield _unknown("category", loc, name, known)
+
+
 def _things_errors(assets: Iterable[str] | None) -> MoreErrors[ThingsFile]:
     known = None if assets is None else _container(assets)
 
@@ -199,9 +206,10 @@ def _furniture_errors(
                 if listed is not None and listed not in things:
                     yield _unknown("list of things", (*loc, key), listed, things)
             for index, companion in enumerate(rule.companions):
+                place = (*loc, "companions", index)
                 if companion.put not in file.furniture:
-                    place = (*loc, "companions", index, "put")
-                    yield _unknown("piece", place, companion.put, file.furniture)
+                    yield _unknown("piece", (*place, "put"), companion.put, file.furniture)
+                yield from _category_errors((*place, "lacking"), companion.lacking)
             yield from _asset_errors((*loc, "assets"), rule.assets, known)
         yield from _rings(file.furniture)
 
@@ -255,6 +263,7 @@ def _kind_errors(
             if piece.put not in known["furniture"]:
                 loc = ("furniture", index, "put")
                 yield _unknown("piece", loc, piece.put, known["furniture"])
+            yield from _category_errors(("furniture", index, "lacking"), piece.lacking)
             for number, name in enumerate(piece.unless):
                 if name not in known["furniture"]:
                     place = ("furniture", index, "unless", number)
