@@ -27,7 +27,10 @@ def _changed(folder: Path, file: str, old: str, new: str) -> list[str]:
     path.write_text(text.replace(old, new, 1))
     known = SceneLibrary().knowledge
     with pytest.raises(SceneError) as caught:
-        read_rules(folder, assets=known.assets, surfaces=known.surfaces, skies=known.skies)
+        read_rules(
+            folder, assets=known.assets, categories=known.categories, surfaces=known.surfaces,
+            skies=known.skies,
+        )  # fmt: skip
     return str(caught.value).splitlines()
 
 
@@ -36,6 +39,7 @@ def test_the_packages_own_rules_are_well() -> None:
     rules = read_rules(
         resource_path("config", "rooms"),
         assets=known.assets,
+        categories=known.categories,
         surfaces=known.surfaces,
         skies=known.skies,
     )
