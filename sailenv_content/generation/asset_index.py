@@ -71,6 +71,11 @@ class AssetIndex:
                 found[part.category] = corners.astype(np.float64) * scale
         return found
 
+    def has(self, name: str, category: str) -> bool:
+        """Return whether an object is of a category or has a part of it, as a row has a hob."""
+        asset = self.asset(name)
+        return category in (asset.category, *(part.category for part in asset.parts))
+
     def back_m(self, name: str, scale: float = 1.0) -> float:
         """Return how far what is drawn reaches behind the origin [m]; negative for behind."""
         return float(self.asset(name).model.bounds()[0, 0] * scale)
@@ -85,9 +90,11 @@ class AssetIndex:
         x, y = ((low + high) / 2.0)[:2].tolist()
         return x, y, float(high[2] + LIGHT_GAP_M if up else low[2] - LIGHT_GAP_M)
 
-    def support_heights(self, name: str, scale: float, under: Floats) -> Floats:
+    def support_heights(
+        self, name: str, scale: float, under: Floats, level: tuple[float, float] | None = None
+    ) -> Floats:
         """Return the heights at which an object would carry something; see `arranging`."""
-        return support_heights(self.asset(name), (scale,) * 3, under)
+        return support_heights(self.asset(name), (scale,) * 3, under, level)
 
     def _measure_glow(self, name: str) -> Floats:
         parts = [part for part in self.asset(name).model.parts if any(part.material.glow)]

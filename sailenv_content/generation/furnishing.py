@@ -7,7 +7,7 @@ way, what must stay free stays free, and all doors can still be reached.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from sailenv_content.families.names import has_form
@@ -17,6 +17,7 @@ from sailenv_content.generation.items import Item, Namer
 from sailenv_content.generation.pieces import PieceChooser, RoomStyle
 from sailenv_content.generation.plan import Area, Block, RoomPlan
 from sailenv_content.generation.positions import APART_M, Positioner, offset
+from sailenv_content.generation.rugs import GAP_M, lies_under, on_its_edge, thin
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.authoring.room_rules.rule_files import Rules
 from sailenv_ros.authoring.room_rules.rule_models import CompanionRule, FurnitureRule, PieceRule
@@ -37,8 +38,6 @@ SEEN_M = 1.2
 
 LEAST_GAP_M = 0.001
 """Least gap between pieces that belong together [m]."""
-
-_RUG_GAP_M = 0.03
 
 
 @dataclass(slots=True)
@@ -95,6 +94,7 @@ class Furnisher:
             if piece.once and any(item.base == piece.put for item in self.items):
                 continue
             stand_ins = [item for item in self.items if item.base in piece.unless]
+            stand_ins += self._having(piece.lacking, self.items)
             if stand_ins:
                 stand_ins[0].needed |= piece.needed
                 continue
@@ -132,7 +132,7 @@ class Furnisher:
             item.base = base
             item.section = f"{self.area.name}:{heading}"
         self.plan.stand(
-            [_thin(item.block) if item.is_flat else item.block for item in group.items],
+            [thin(item.block) if item.is_flat else item.block for item in group.items],
             group.clear,
         )
         self.items.extend(group.items)
@@ -175,7 +175,10 @@ class Furnisher:
             if any(item.block.meets(mate, LEAST_GAP_M) for mate in mates):
                 return False
             rugs = [each for each in (*self.items, *group.items) if each.is_flat]
-            if item.side is not None and any(_over(item.block, rug.block) for rug in rugs):
+            at_wall, moves = item.side is not None, not rule.static
+            if any(at_wall and lies_under(rug.block, item.block, GAP_M) for rug in rugs):
+                return False
+            if any(moves and on_its_edge(rug, item, self.stock) for rug in rugs):
                 return False
             apart = LEAST_APART_M if rule.eye_level is None else APART_M
             if not self.plan.is_free(item.block, apart):
@@ -193,15 +196,23 @@ class Furnisher:
         """Return whether a rug lies on bare floor, or under what stands free and never moves."""
         for other in (*self.items, *group.items):
             standing = other.side is not None or not other.entry.get("static", False)
-            if (other.is_flat or standing) and _over(item.block, other.block):
+            if (other.is_flat or standing) and lies_under(item.block, other.block, GAP_M):
                 return False
         doors = [c for c in self.plan.clear if c.low == 0.0]
-        return not any(_over(item.block, door) for door in doors)
+        return not any(lies_under(item.block, door, GAP_M) for door in doors)
+
+    def _having(self, category: str | None, items: Iterable[Item]) -> list[Item]:
+        """Return what is of a category or has a part of it; nothing for None."""
+        return [
+            item for item in items if category is not None and self.stock.has(item.asset, category)
+        ]
 
     def _with_companions(self, item: Item, rule: FurnitureRule, group: _Group) -> bool:
         """Place what belongs to a piece, and what belongs to that; say if all needed is there."""
         for companion in rule.companions:
             if not companion.needed and not self.dice.chance(companion.chance):
+                continue
+            if self._having(companion.lacking, (*self.items, *group.items)):
                 continue
             least = max(1, companion.count[0]) if companion.needed else 0
             if self._companions(item, companion, group) < least:
@@ -245,22 +256,3 @@ def _between(item: Item, other: Item) -> Block:
         half_y=min(item.block.half_y, other.block.half_y), yaw_rad=item.block.yaw_rad,
         low=0.02, high=SEEN_M,
     )  # fmt: skip
-
-
-def _thin(block: Block) -> Block:
-    """Return a rug as it is in the plan: nothing that anything could run into."""
-    return Block(
-        x=block.x, y=block.y, half_x=block.half_x, half_y=block.half_y,
-        yaw_rad=block.yaw_rad, low=-0.02, high=-0.01,
-    )  # fmt: skip
-
-
-def _over(first: Block, second: Block) -> bool:
-    """Return whether two boxes that stand on the floor overlap, seen from above."""
-    if second.low > 0.1:
-        return False
-    flat = [
-        Block(x=b.x, y=b.y, half_x=b.half_x, half_y=b.half_y, yaw_rad=b.yaw_rad)
-        for b in (first, second)
-    ]
-    return flat[0].meets(flat[1], _RUG_GAP_M)

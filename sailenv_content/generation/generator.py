@@ -22,6 +22,7 @@ from sailenv_content.generation.pieces import PieceChooser
 from sailenv_content.generation.plan import RoomPlan
 from sailenv_content.generation.room_agents import StandingWorld, agent_entries, best_first
 from sailenv_content.generation.route import mover_entry
+from sailenv_content.generation.rugs import stand_on_rugs
 from sailenv_content.generation.scene_text import scene_text
 from sailenv_content.generation.shells import shell_of
 from sailenv_content.generation.things import lay_things
@@ -49,8 +50,6 @@ __all__ = ["GeneratedScene", "Generator", "generate_scene"]
 MAX_ATTEMPTS = 40
 MAX_ROUNDS = 8
 """Greatest number of times that faulty objects are removed before the room is drawn again."""
-
-RUG_GAP_M = 0.001
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -189,24 +188,12 @@ class Generator:
             if not furnisher.furnish(self._rules.kind(area.kind).furniture):
                 return None
             furniture += furnisher.items
-        self._lift_from_rugs(furniture)
+        stand_on_rugs(furniture, self._stock)
         laid = lay_things(furniture, self._rules, self._stock, dice("things"), namer)
         return Draft(
             kind=kind, file=file, seed=seed, attempt=attempt, shell=shell, plan=plan,
             items=_beside_their_carriers(furniture, laid), stock=self._stock,
         )  # fmt: skip
-
-    def _lift_from_rugs(self, items: Sequence[Item]) -> None:
-        """Put what stands free on a rug upon it."""
-        rugs = [item for item in items if item.is_flat]
-        for item in items:
-            if item.is_flat or "position" not in item.entry or item.block.low > 0.1:
-                continue
-            under = [rug for rug in rugs if _lies_under(rug, item)]
-            if under:
-                top = max(float(self._stock.bounds(r.asset, r.scale)[1, 2]) for r in under)
-                x, y, _ = item.entry["position"]
-                item.entry["position"] = [x, y, round(top + RUG_GAP_M, 4)]
 
     def _checked(self, draft: Draft, backend: RenderBackend) -> GeneratedScene | None:
         """Take out what fails a check; None if that is something the room needs."""
@@ -304,14 +291,6 @@ def _without_looks(room: RoomSpec | None) -> RoomSpec | None:
             "floors": tuple(each.model_copy(update={"surface": one}) for each in room.floors),
         }
     )
-
-
-def _lies_under(rug: Item, item: Item) -> bool:
-    flat = [
-        type(b)(x=b.x, y=b.y, half_x=b.half_x, half_y=b.half_y, yaw_rad=b.yaw_rad)
-        for b in (rug.block, item.block)
-    ]
-    return flat[0].meets(flat[1])
 
 
 def _beside_their_carriers(furniture: Sequence[Item], laid: Iterable[Item]) -> list[Item]:

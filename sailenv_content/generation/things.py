@@ -125,6 +125,7 @@ def _thing(
 ) -> Item:
     x, y, turn = round(x, 3), round(y, 3), (turn + 180.0) % 360.0 - 180.0
     entry: dict[str, object] = {"on": item.name, "position": [x, y, 0.0]}
+    entry |= {"level": list(thing.level)} if thing.level is not None else {}
     entry |= {"rotation": [0, 0, turn]} if turn else {}
     entry |= {"scale": scale} if scale != 1.0 else {}
     entry |= {"static": True} if thing.static else {}
@@ -172,13 +173,11 @@ def _kept(
     centre = np.array([laid.block.x, laid.block.y])
     corners = laid.block.corners() - centre
     spots = centre + np.vstack([np.zeros(2), MOST * corners, corners])
-    heights = stock.support_heights(item.asset, item.scale, spots)
+    heights = stock.support_heights(item.asset, item.scale, spots, thing.level)
     if not np.isfinite(heights[:5]).all():
         return
     # Across the arms of a chair or on the rim of a basin nothing is laid.
     if heights.max() - heights[0] > BRIDGED_M:
-        return
-    if thing.highest is not None and heights.max() > thing.highest:
         return
     taken.append(laid.block)
     category = stock.asset(laid.asset).category

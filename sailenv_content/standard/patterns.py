@@ -19,6 +19,12 @@ from sailenv_ros.types.model import Texture
 __all__ = ["PATTERNS", "Pattern", "pattern_maps"]
 
 EDGE_PX = 256
+GRAIN_PX = 1024
+"""Edge of the tile of wood, whose finest lines are 2 mm apart [px]."""
+
+RINGS = 14
+"""Growth rings between what is of mean height in the landscape of wood and its ridges."""
+
 Field = NDArray[np.float64]
 
 
@@ -31,7 +37,7 @@ class Pattern:
     tile_m : float
         Edge of what one tile covers [m].
     height : callable
-        Gives (EDGE_PX, EDGE_PX) float64 heights, 0 to 1, that tile without a seam.
+        Gives (N, N) float64 heights, 0 to 1, that tile without a seam.
     shade : float
         How much darker than the peaks the valleys are, 0 to 1.
     relief : float
@@ -54,7 +60,7 @@ def _maps(name: str) -> Mapping[str, Texture]:
     pattern = PATTERNS[name]
     height = pattern.height()
     bright = 1.0 - pattern.shade * (1.0 - height)
-    pixels = np.full((EDGE_PX, EDGE_PX, 4), 255, np.uint8)
+    pixels = np.full((*height.shape, 4), 255, np.uint8)
     pixels[..., :3] = np.rint(255.0 * np.clip(bright, 0.0, 1.0))[..., None]
     maps = {"base_colour_texture": pixels}
     if pattern.relief:
@@ -71,7 +77,7 @@ def _normals(height: Field, relief: float) -> Texture:
     up = (np.roll(height, 1, axis=0) - np.roll(height, -1, axis=0)) * 0.5 * relief * 16.0
     normal = np.dstack([-right, -up, np.ones_like(height)])
     normal /= np.linalg.norm(normal, axis=2, keepdims=True)
-    pixels = np.full((EDGE_PX, EDGE_PX, 4), 255, np.uint8)
+    pixels = np.full((*height.shape, 4), 255, np.uint8)
     pixels[..., :3] = np.rint(127.5 * normal + 127.5)
     return pixels
 
@@ -81,10 +87,15 @@ def _noise(seed: int, *sigmas: float | tuple[float, float]) -> Field:
     generator = np.random.default_rng(seed)
     total = np.zeros((EDGE_PX, EDGE_PX))
     for sigma in sigmas:
-        layer = ndimage.gaussian_filter(generator.standard_normal(total.shape), sigma, mode="wrap")
-        total += layer / layer.std()
+        total += _layer(generator, EDGE_PX, sigma)
     low, high = np.percentile(total, (1.0, 99.0))
     return np.asarray(np.clip((total - low) / (high - low), 0.0, 1.0))
+
+
+def _layer(generator: np.random.Generator, edge: int, sigma: float | tuple[float, float]) -> Field:
+    """Return (edge, edge): smooth noise that wraps around, of deviation 1; sigma in pixels."""
+    layer = ndimage.gaussian_filter(generator.standard_normal((edge, edge)), sigma, mode="wrap")
+    return np.asarray(layer / layer.std())
 
 
 def _weave() -> Field:
@@ -115,15 +126,37 @@ def _leather() -> Field:
 
 
 def _grain() -> Field:
-    """Wood's fibres, along u."""
-    broad, fine = _noise(14, (10.0, 80.0)), _noise(15, (1.0, 40.0))
-    rings = 0.5 + 0.5 * np.sin(2.0 * np.pi * (4.0 * broad + 0.5 * fine))
-    return np.asarray(np.clip(0.6 * rings + 0.4 * fine, 0.0, 1.0))
+    """Wood: fibres along u, growth rings as a veneer shows them.
+
+    Rings are lines of equal height in a smooth landscape, long along u. On its slopes they lie
+    2 to 5 mm apart, as on quarter-sawn boards; around its ridges, 10 to 20 cm apart, they make
+    the arches of flat-sawn ones.
+    """
+    generator = np.random.default_rng(47)
+    coarse = GRAIN_PX // 8
+    figure = ndimage.zoom(
+        _layer(generator, coarse, (4.2, 38.0)), 8, order=3, mode="grid-wrap", grid_mode=True
+    )
+    waver = _layer(generator, GRAIN_PX, (2.0, 40.0))
+    age = RINGS * figure + 0.07 * waver
+    # Years are good and bad: rings differ in width and in how dark their late wood is.
+    years = np.arange(-8 * RINGS, 8 * RINGS)
+    age += np.interp(age, years, generator.uniform(-0.45, 0.45, len(years)))
+    strength = np.interp(age, years, generator.uniform(0.35, 1.0, len(years)))
+    season = age % 1.0
+    late = np.minimum((season / 0.8) ** 2, (1.0 - season) / 0.2)
+    # Lines finer than the pixels would make others that are none.
+    lines = np.hypot(*np.gradient(age))
+    late *= strength * np.clip((0.7 - lines) / 0.4, 0.0, 1.0)
+    fibres = _layer(generator, GRAIN_PX, (0.8, 22.0))
+    tone = _layer(generator, coarse, (3.0, 30.0))
+    broad = ndimage.zoom(tone, 8, order=1, mode="grid-wrap", grid_mode=True)
+    return np.asarray(np.clip(0.8 - 0.5 * late + 0.07 * fibres + 0.06 * broad, 0.0, 1.0))
 
 
 PATTERNS = {
     "weave": Pattern(tile_m=0.06, height=_weave, shade=0.45),
     "terry": Pattern(tile_m=0.14, height=_terry, shade=0.3, relief=0.2),
     "leather": Pattern(tile_m=0.12, height=_leather, shade=0.3, relief=0.25),
-    "grain": Pattern(tile_m=0.60, height=_grain, shade=0.3),
+    "grain": Pattern(tile_m=1.2, height=_grain, shade=0.3),
 }

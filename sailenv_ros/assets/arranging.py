@@ -115,7 +115,7 @@ def _upon(
     middle, size = (low + high) / 2.0, high - low
     offsets = np.stack(np.meshgrid(_SAMPLES, _SAMPLES), axis=-1).reshape(-1, 2)
     under = np.array([x, y]) + middle[:2] + offsets * size[:2]
-    height = float(support_heights(carrying, carrier.scale, under).max())
+    height = float(support_heights(carrying, carrier.scale, under, entry.level).max())
     if not np.isfinite(height):
         raise InvalidRequest(
             f"position of {entry.name!r}", entry.position, f"a place that {entry.on!r} lies under"
@@ -124,7 +124,12 @@ def _upon(
     return Pose.from_matrix(base.matrix() @ given)
 
 
-def support_heights(asset: Asset, scale: tuple[float, float, float], under: Floats) -> Floats:
+def support_heights(
+    asset: Asset,
+    scale: tuple[float, float, float],
+    under: Floats,
+    level: tuple[float, float] | None = None,
+) -> Floats:
     """Return the heights at which an asset would carry something.
 
     Parameters
@@ -133,6 +138,9 @@ def support_heights(asset: Asset, scale: tuple[float, float, float], under: Floa
     scale : (3,) tuple of float
     under : (N, 2) float64
         Points below, in the body frame [m].
+    level : (2,) tuple of float or None
+        Least and greatest height of an upper side that counts, such as a worktop's below
+        cupboards, in the body frame [m].
 
     Returns
     -------
@@ -140,7 +148,10 @@ def support_heights(asset: Asset, scale: tuple[float, float, float], under: Floa
         In the body frame [m]; -inf where nothing of it is above.
     """
     shapes = asset.collision or _box_of(asset)
-    return np.asarray(np.max([_heights(shape, scale, under) for shape in shapes], axis=0))
+    heights = np.stack([_heights(shape, scale, under) for shape in shapes])
+    if level is not None:
+        heights[(heights < level[0]) | (heights > level[1])] = -np.inf
+    return np.asarray(heights.max(axis=0))
 
 
 def _beside_wall(entry: ObjectSpec, asset: Asset, room: RoomSpec) -> Pose:

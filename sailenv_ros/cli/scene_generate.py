@@ -47,7 +47,11 @@ def generate(args: argparse.Namespace) -> int:
     folder = args.rules or resource_path("config", "rooms")
     try:
         rules = read_rules(
-            folder, assets=known.assets, surfaces=known.surfaces, skies=known.skies or None
+            folder,
+            assets=known.assets,
+            categories=known.categories,
+            surfaces=known.surfaces,
+            skies=known.skies or None,
         )
     except SceneError as problem:
         print(problem)

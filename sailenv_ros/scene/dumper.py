@@ -17,7 +17,7 @@ WIDTH = 120
 MARGIN = 6
 """Width kept free for the text that usually precedes a collection on its line [characters]."""
 
-FIRST = ("name", "type", "asset", "on", "wall", "at", "position")
+FIRST = ("name", "type", "asset", "on", "level", "wall", "at", "position")
 """Keys by which people know an entry, and where it is."""
 
 

@@ -21,6 +21,7 @@ __all__ = [
     "Direction",
     "Force",
     "Fraction",
+    "Heights",
     "JointCoordinate",
     "JointLimits",
     "LinearColour",
@@ -125,6 +126,9 @@ Torque: TypeAlias = Annotated[
 ]
 DegreesPerSecond: TypeAlias = Annotated[
     tuple[_Turn, _Turn, _Turn], Vector(3, "three numbers [x, y, z] in [deg/s]")
+]
+Heights: TypeAlias = Annotated[
+    tuple[_Metres, _Metres], Vector(2, "two numbers [least, most] in [m]")
 ]
 JointCoordinate: TypeAlias = Annotated[float, Number(least=-1e4, most=1e4)]
 JointLimits: TypeAlias = Annotated[

@@ -29,6 +29,7 @@ __all__ = [
     "not_unlabelled",
     "only_beside",
     "parents_exist",
+    "spans_ascend",
     "static_never_moves",
     "turned_where_placed",
     "unit_quaternion",
@@ -121,6 +122,18 @@ def only_beside(key: str, *others: str) -> Rule:
                     yield (other,), f"means something only beside {key}"
 
     return rule
+
+
+def spans_ascend(entry: Entry) -> Faults:
+    """Refuse spans whose first number is the larger one."""
+    for key, value in entry.items():
+        if (
+            isinstance(value, list | tuple)
+            and len(value) == 2
+            and all(isinstance(part, int | float) for part in value)
+            and value[0] > value[1]
+        ):
+            yield (key,), f"must be [least, most], got [{value[0]}, {value[1]}]"
 
 
 def carriers_exist(scene: Entry) -> Faults:

@@ -52,6 +52,7 @@ PLACE_KEYS = (
     "orientation",
     "look_at",
     "on",
+    "level",
     "wall",
     "at",
     "height",

@@ -13,6 +13,7 @@ from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, optional
 from sailenv_ros.scene.fields import (
     DegreesPerSecond,
     Fraction,
+    Heights,
     LinearColour,
     MetresPerSecond,
     Name,
@@ -24,7 +25,13 @@ from sailenv_ros.scene.fields import (
 from sailenv_ros.scene.lesson_rules import leaves_after_it_appears
 from sailenv_ros.scene.placing import Turned
 from sailenv_ros.scene.room_rules import WALLS
-from sailenv_ros.scene.rules import at_most_one, distinct, only_beside, static_never_moves
+from sailenv_ros.scene.rules import (
+    at_most_one,
+    distinct,
+    only_beside,
+    spans_ascend,
+    static_never_moves,
+)
 from sailenv_ros.scene.spec_joints import JointSpec, on_a_joint
 from sailenv_ros.scene.spec_materials import MaterialSpec
 from sailenv_ros.scene.spec_room import WallName
@@ -66,6 +73,8 @@ class ObjectSpec(Turned):
         at_most_one("position", "wall"),
         at_most_one("on", "wall"),
         only_beside("wall", "at", "height", "gap"),
+        only_beside("on", "level"),
+        spans_ascend,
         static_never_moves,
         on_a_joint,
         distinct("part", "materials"),
@@ -79,6 +88,9 @@ class ObjectSpec(Turned):
     position: Position = Field(default=(0.0, 0.0, 0.0), description="of the asset's origin [m]")
     on: Name | None = optional(
         "object below: position and rotation are relative to it, z to its upper side"
+    )
+    level: Heights | None = optional(
+        "where that upper side is, above the other's origin: a worktop below cupboards [m]"
     )
     wall: Annotated[WallName, Choice(WALLS)] | None = optional(
         "wall at its back, instead of position: north (+y), east (+x), south (-y) or west (-x)"

@@ -5,7 +5,7 @@ A built `World` in, diagnostics out. The world is stepped, so it is one for this
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,12 +18,16 @@ from sailenv_ros.world.jointed_bodies import JointedBody
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.world import World
 
-__all__ = ["Obstruction", "Overlap", "Shift", "obstructions", "overlaps", "shifts"]
+__all__ = ["RUG_GIVES_M", "Obstruction", "Overlap", "Shift", "obstructions", "overlaps", "shifts"]
 
 MOVER_RADIUS_M = 0.15
 """Room that a camera wants around it."""
 
+RUG = "rug"
 TRACK_STEP_S = 0.25
+
+RUG_GIVES_M = 0.02
+"""How far static furniture may stand in the pile of a rug [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,12 +61,14 @@ class Obstruction:
 def overlaps(world: World, *, tolerance_m: float = 0.002) -> Iterator[Overlap]:
     """Yield all pairs of objects that overlap by more than a tolerance, static ones too.
 
-    The parts of a room stand in one another by construction; those pairs are left out.
+    The parts of a room stand in one another by construction; those pairs are left out. Rugs give
+    way to static furniture.
     """
     for gap in gaps(world, 0.0, _belong_together):
-        if -gap.gap_m > tolerance_m:
-            names = (world.body(id_).placement.name for id_ in (gap.first, gap.second))
-            yield Overlap(first=next(names), second=next(names), depth_m=-gap.gap_m)
+        pair = [world.body(id_) for id_ in (gap.first, gap.second)]
+        if -gap.gap_m > (RUG_GIVES_M if _in_a_rug(pair) else tolerance_m):
+            first, second = (body.placement.name for body in pair)
+            yield Overlap(first=first, second=second, depth_m=-gap.gap_m)
 
 
 def shifts(
@@ -121,6 +127,12 @@ def _on_track(world: World, mover: Mover, probe: int, radius_m: float) -> Iterat
 def _distance(world: World, body: Body, probe: int, within_m: float) -> float:
     points = world.client.getClosestPoints(body.bullet_id, probe, within_m, linkIndexA=body.link)
     return float(min((point[8] for point in points), default=within_m))
+
+
+def _in_a_rug(pair: Sequence[Body]) -> bool:
+    """Return whether one is a rug, and neither moves."""
+    rug = any(body.placement.asset.category == RUG for body in pair)
+    return rug and all(body.placement.static for body in pair)
 
 
 def _belong_together(a: Body, b: Body) -> bool:

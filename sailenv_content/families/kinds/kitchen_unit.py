@@ -67,31 +67,19 @@ def _cabinet(
     rise = v.height - TOP_M
     outer = Box((0.0, low, PLINTH_M), (DEPTH_M - 0.02, high, rise))
     y, wide = (low + high) / 2, high - low
-    name = f"cabinet {number}"
+    name, lead = f"cabinet {number}", f"cabinet {number} "
     if kind in ("oven", "dishwasher"):
         case = outer.within((0.03, 0.001, 0.001), (0.0, 0.001, 0.003))
         if kind == "oven":
             oven(
-                b,
-                case,
-                body=SHEET,
-                face=v.appliance,
-                knobs=v.grip,
-                grip=v.grip,
-                prefix=f"{name} ",
+                b, case, body=SHEET, face=v.appliance, knobs=v.grip, grip=v.grip, prefix=lead,
                 count=4,
-            )
+            )  # fmt: skip
         else:
             dishwasher(
-                b,
-                case,
-                body=SHEET,
-                face=v.scheme[1],
-                grip=v.metal,
-                kind=v.front,
-                handle_kind=v.handle,
-                prefix=f"{name} ",
-            )
+                b, case, body=SHEET, face=v.scheme[1], grip=v.metal, kind=v.front,
+                handle_kind=v.handle, prefix=lead,
+            )  # fmt: skip
     else:
         inside, fronts = unit(b, v.scheme[0], outer, has_top=False)
         if kind == "drawers":
@@ -148,11 +136,19 @@ def _worktop(
         b.box(v.top, (c - a, e - d, TOP_M), ((a + c) / 2, (d + e) / 2, z), bevel=0.0008)
 
 
+def _widths(v: Values, kinds: list[str]) -> list[float]:
+    wide = {"cupboard": v.cell, "drawers": v.cell, "sink": 0.8 if v.cell > 0.5 else 0.6}
+    return [wide.get(kind, 0.6) for kind in kinds]
+
+
+def _hob(kinds: list[str]) -> str:
+    """Return the kind of cabinet, the first of which carries the hob of a row."""
+    return "oven" if "oven" in kinds else "drawers"
+
+
 def _row(b: PieceBuilder, v: Values, kinds: list[str], *, first: int = 1) -> float:
     """Add cabinets side by side, the middle of their backs at the origin; return their width."""
-    widths = {"cupboard": v.cell, "drawers": v.cell, "sink": 0.8 if v.cell > 0.5 else 0.6}
-    each = [widths.get(kind, 0.6) for kind in kinds]
-    hob = "oven" if "oven" in kinds else "drawers"
+    each, hob = _widths(v, kinds), _hob(kinds)
     y = -sum(each) / 2
     size = (DEPTH_M - 0.09, sum(each) - 0.004, PLINTH_M)
     b.box(v.plinth, size, (size[0] / 2, 0.0, PLINTH_M / 2))
@@ -187,14 +183,17 @@ def _straight(b: PieceBuilder, v: Values) -> None:
 
 
 def _upper(b: PieceBuilder, v: Values, width: float, kinds: list[str]) -> None:
-    """Hang cabinets above a row, and a hood above its hob."""
+    """Hang cabinets above a row, and a hood above its hob, if it has one."""
     low, high, deep = v.height + 0.5, v.height + 0.5 + v.upper, 0.34
     cells = max(2, round(width / 0.6))
     each = width / cells
-    hood_at = 1 if "oven" in kinds and kinds.index("oven") < len(kinds) / 2 else cells - 2
+    hood_at = -1
+    if _hob(kinds) in kinds:
+        place, widths = kinds.index(_hob(kinds)), _widths(v, kinds)
+        hood_at = int((sum(widths[:place]) + widths[place] / 2) / each)
     for number in range(cells):
         y = -width / 2 + number * each
-        if number == hood_at and cells > 2:
+        if number == hood_at:
             with b.part("hood", "hood"):
                 rows = (
                     (0.5, 0.06, low + 0.03),
@@ -232,10 +231,7 @@ def _corner(b: PieceBuilder, v: Values) -> None:
     """Make two rows that meet in a corner."""
     kinds = _kinds(b, v.count)
     split = 3 if len(kinds) > 3 else 2
-    long = sum(
-        v.cell if k in ("cupboard", "drawers") else 0.8 if k == "sink" else 0.6
-        for k in kinds[:split]
-    )
+    long = sum(_widths(v, kinds[:split]))
     blind = DEPTH_M + 0.1
     with b.frame((-(long + blind) / 2, 0.0, 0.0)), b.frame((0.0, -blind / 2, 0.0)):
         width = _row(b, v, kinds[:split])
@@ -252,9 +248,7 @@ def _corner(b: PieceBuilder, v: Values) -> None:
     b.box(v.plinth, (blind - 0.02, blind - 0.02, PLINTH_M), (*middle, PLINTH_M / 2))
     b.box(v.top, (blind, blind, TOP_M), (*middle, v.height - TOP_M / 2), bevel=0.0008)
     rest = kinds[split:] or ["cupboard"]
-    other = sum(
-        v.cell if k in ("cupboard", "drawers") else 0.8 if k == "sink" else 0.6 for k in rest
-    )
+    other = sum(_widths(v, rest))
     with b.frame((x + blind + other / 2, y + blind, 0.0), -90.0):
         _row(b, v, rest, first=split + 1)
 

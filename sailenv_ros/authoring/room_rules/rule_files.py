@@ -94,6 +94,7 @@ def read_rules(
     folder: Path,
     *,
     assets: Iterable[str] | None = None,
+    categories: Collection[str] | None = None,
     surfaces: Iterable[str] | None = None,
     skies: Iterable[str] | None = None,
 ) -> Rules:
@@ -103,7 +104,7 @@ def read_rules(
     ----------
     folder : Path
         With a file for each kind of room, and the shared ones in ``library``.
-    assets, surfaces, skies : iterable of str or None
+    assets, categories, surfaces, skies : iterable of str or None
         Names that the files may use; None leaves them unchecked.
 
     Raises
@@ -114,7 +115,7 @@ def read_rules(
     library = folder / LIBRARY
     things = _load(library / "things.yaml", ThingsFile, _things_errors(assets)).things
     furniture = _load(
-        library / "furniture.yaml", FurnitureFile, _furniture_errors(assets, things)
+        library / "furniture.yaml", FurnitureFile, _furniture_errors(assets, categories, things)
     ).furniture
     materials = _load(
         library / "materials.yaml", MaterialsFile, _materials_errors(surfaces)
@@ -132,7 +133,10 @@ def read_rules(
         "light": light,
     }
     return Rules(
-        kinds={file.stem: _load(file, KindFile, _kind_errors(known, kinds)) for file in files},
+        kinds={
+            file.stem: _load(file, KindFile, _kind_errors(known, categories, kinds))
+            for file in files
+        },
         furniture=furniture,
         things=things,
         materials=materials,
@@ -175,6 +179,13 @@ def _asset_errors(
             )
 
 
+def _category_errors(
+    loc: tuple[Any, ...], name: str | None, known: Collection[str] | None
+) -> Iterator[Diagnostic]:
+    if known is not None and name is not None and name not in known:
+        yield _unknown("category", loc, name, known)
+
+
 def _things_errors(assets: Iterable[str] | None) -> MoreErrors[ThingsFile]:
     known = None if assets is None else _container(assets)
 
@@ -187,7 +198,9 @@ def _things_errors(assets: Iterable[str] | None) -> MoreErrors[ThingsFile]:
 
 
 def _furniture_errors(
-    assets: Iterable[str] | None, things: Mapping[str, tuple[ThingRule, ...]]
+    assets: Iterable[str] | None,
+    categories: Collection[str] | None,
+    things: Mapping[str, tuple[ThingRule, ...]],
 ) -> MoreErrors[FurnitureFile]:
     known = None if assets is None else _container(assets)
 
@@ -199,9 +212,10 @@ def _furniture_errors(
                 if listed is not None and listed not in things:
                     yield _unknown("list of things", (*loc, key), listed, things)
             for index, companion in enumerate(rule.companions):
+                place = (*loc, "companions", index)
                 if companion.put not in file.furniture:
-                    place = (*loc, "companions", index, "put")
-                    yield _unknown("piece", place, companion.put, file.furniture)
+                    yield _unknown("piece", (*place, "put"), companion.put, file.furniture)
+                yield from _category_errors((*place, "lacking"), companion.lacking, categories)
             yield from _asset_errors((*loc, "assets"), rule.assets, known)
         yield from _rings(file.furniture)
 
@@ -248,13 +262,16 @@ def _light_errors(skies: Iterable[str] | None) -> MoreErrors[LightFile]:
 
 
 def _kind_errors(
-    known: Mapping[str, Mapping[str, Any]], kinds: Iterable[str]
+    known: Mapping[str, Mapping[str, Any]],
+    categories: Collection[str] | None,
+    kinds: Iterable[str],
 ) -> MoreErrors[KindFile]:
     def errors(file: KindFile) -> Iterator[Diagnostic]:
         for index, piece in enumerate(file.furniture):
             if piece.put not in known["furniture"]:
                 loc = ("furniture", index, "put")
                 yield _unknown("piece", loc, piece.put, known["furniture"])
+            yield from _category_errors(("furniture", index, "lacking"), piece.lacking, categories)
             for number, name in enumerate(piece.unless):
                 if name not in known["furniture"]:
                     place = ("furniture", index, "unless", number)

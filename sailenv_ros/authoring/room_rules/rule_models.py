@@ -6,13 +6,13 @@ angles degrees. A span is two numbers, least and most, or one number for both.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
+from typing import Annotated, ClassVar, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Text, Vector, optional
-from sailenv_ros.scene.fields import Fraction, LinearColour, Radiance, Rule, SceneModel
+from sailenv_ros.scene.fields import Fraction, Heights, LinearColour, Radiance, Rule, SceneModel
+from sailenv_ros.scene.rules import spans_ascend
 from sailenv_ros.scene.spec_outside import OUTSIDE_KINDS
 from sailenv_ros.scene.spec_room import SurfaceSpec
 
@@ -54,18 +54,6 @@ Place = Literal["wall", "corner", "middle", "free", "ceiling"]
 Side = Literal["front", "back", "left", "right", "beside", "around", "under", "over", "corner"]
 
 
-def spans_ascend(entry: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, ...], str]]:
-    """Refuse spans whose first number is the larger one."""
-    for key, value in entry.items():
-        if (
-            isinstance(value, list | tuple)
-            and len(value) == 2
-            and all(isinstance(part, int | float) for part in value)
-            and value[0] > value[1]
-        ):
-            yield (key,), f"must be [least, most], got [{value[0]}, {value[1]}]"
-
-
 class _RuleModel(SceneModel):
     """Base of all entries of a rule file."""
 
@@ -94,6 +82,9 @@ class CompanionRule(_RuleModel):
     aside: Metres = Field(default=(0.0, 0.0), description="off the middle, to its left [m]")
     turn: Turn = Field(default=(0.0, 0.0), description="besides facing the other piece [deg]")
     ahead: _Length = Field(default=0.0, description="for `under`: off the middle, to its front [m]")
+    lacking: _Name | None = optional(
+        "category: not if something of the room is of it, or has such a part"
+    )
     in_view: Annotated[bool, Switch()] = Field(
         default=False, description="true: what is between them is part of the two, or nothing"
     )
@@ -164,7 +155,9 @@ class ThingRule(_RuleModel):
     turn: Turn = Field(default=(-180.0, 180.0), description="against the piece [deg]")
     scale: Factor = Field(default=(1.0, 1.0), description="of its size")
     static: Annotated[bool, Switch()] = Field(default=False, description="true: never moves")
-    highest: _Length | None = optional("where it may lie, above the piece's base [m]")
+    level: Heights | None = optional(
+        "of the upper side that it lies on, above the piece's base: a worktop below cupboards [m]"
+    )
     hob: Annotated[bool, Switch()] = Field(
         default=False, description="true: x and y are those of the piece's hob, if it has one"
     )
@@ -285,6 +278,9 @@ class PieceRule(_RuleModel):
     )
     unless: tuple[_Name, ...] = Field(
         default=(), description="pieces of the room that stand for it: then it has none"
+    )
+    lacking: _Name | None = optional(
+        "category: not if something of the room is of it, or has such a part"
     )
     per_metre: Fraction = Field(
         default=0.0, description="more of them: so many per square metre of the floor"

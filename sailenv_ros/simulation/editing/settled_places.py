@@ -32,22 +32,23 @@ def settled_place(body: Body, carrier: Body) -> dict[str, Any]:
     Returns
     -------
     dict
-        `on`, `position` [m] and what turns it; without `on`, in the world frame, if there is
-        nothing of the carrier under it.
+        `on`, its `level` if any, `position` [m] and what turns it; without `on`, in the world
+        frame, if there is nothing of the carrier under it.
     """
     entry, below = body.placement.entry, carrier.placement.entry
     assert entry is not None
     assert below is not None
     relative = np.linalg.inv(carrier.pose().matrix()) @ body.pose().matrix()
-    keys = {"on": below.name, **pose_entry(Pose.from_matrix(relative))}
+    surface = entry.model_dump(mode="json", include={"on", "level"}, exclude_none=True)
+    keys = {**surface, **pose_entry(Pose.from_matrix(relative))}
     plain = entry.model_dump(mode="json", include={"name", "asset", "scale"})
     # The height in the file counts from what lies under the object: that of 0 tells how high.
     x, y, _ = keys["position"]
-    level = ObjectSpec.model_validate({**plain, **keys, "position": [x, y, 0.0]})
+    lowered = ObjectSpec.model_validate({**plain, **keys, "position": [x, y, 0.0]})
     at_origin = below.model_dump(mode="json", include={"name", "asset", "scale"})
     assets = {entry.name: body.placement.asset, below.name: carrier.placement.asset}
     try:
-        poses = arranged([ObjectSpec.model_validate(at_origin), level], assets, None)
+        poses = arranged([ObjectSpec.model_validate(at_origin), lowered], assets, None)
     except InvalidRequest:
         return pose_entry(body.pose())
     height = float(relative[2, 3]) - poses[entry.name].position_m[2]

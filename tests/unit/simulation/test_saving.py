@@ -196,8 +196,8 @@ version: 1
 objects:
   - {name: table, asset: cube, position: [0, 0, 0.25], rotation: [0, 0, 30], scale: [1, 1, 0.5],
      static: true}
-  - {name: book, asset: cube, on: table, position: [0.1, 0.2, 0], rotation: [0, 0, 10],
-     scale: [0.2, 0.3, 0.05]}
+  - {name: book, asset: cube, on: table, level: [0.2, 0.3], position: [0.1, 0.2, 0],
+     rotation: [0, 0, 10], scale: [0.2, 0.3, 0.05]}
   - {name: label, asset: cube, on: book, position: [0.07, 0, 0.01], scale: 0.02, static: true}
 """,
         encoding="utf-8",
@@ -211,6 +211,7 @@ objects:
     assert core.get_object("book").pose.position_m[2] < before.position_m[2] - 0.0009
     text = assert_comes_back(core)
     assert "on: table" in text
+    assert "level: [0.2, 0.3]" in text
     assert "on: book" in text
     core.close()
 

@@ -6,18 +6,21 @@ import itertools
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from sailenv_content.generation.asset_index import AssetIndex
 from sailenv_content.generation.furnishing import Furnisher
 from sailenv_content.generation.items import Item, Namer, block_of
 from sailenv_content.generation.lighting import times_of
-from sailenv_content.generation.plan import Area, RoomPlan
+from sailenv_content.generation.plan import Area, Block, RoomPlan
 from sailenv_content.generation.room_shapes import outer_sides
 from sailenv_content.generation.things import lay_things
+from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.sources import installed_packs, installed_sources
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.authoring.room_rules.rule_files import rules_of
+from sailenv_ros.scene.spec import ObjectSpec
 
 HALF = (3.4, 2.6)
 HEIGHT_M = 2.6
@@ -125,8 +128,73 @@ def test_on_a_hob_stand_pots_alone_and_nothing_in_a_sink(stock: AssetIndex, asse
             pot = thing.asset.startswith("pot~")
             assert inside == ({"stove"} if pot else set())
             on_hob, count = on_hob + pot, count + 1
-    assert on_hob >= 4 or "wall" in asset  # a hood hangs over that one
+            # Below cupboards and a hood as well: on the worktop, where it is built there too.
+            (height,) = stock.support_heights(asset, 1.0, middle[None], thing.entry["level"])
+            assert 0.85 < height < 1.0
+    assert on_hob >= 4
     assert count > 24
+
+
+def test_what_lies_below_cupboards_is_built_there(stock: AssetIndex) -> None:
+    asset = stock.asset("kitchen_unit~wall:1")
+    x, y = -0.15, float(stock.bounds(asset.name)[1, 1]) - 0.08  # at the end without the hob
+    under = np.array([(x, y)])
+    (top,) = stock.support_heights(asset.name, 1.0, under)
+    (worktop,) = stock.support_heights(asset.name, 1.0, under, (0.8, 1.1))
+    assert worktop < 1.0 < 1.9 < top
+    assert not np.isfinite(stock.support_heights(asset.name, 1.0, under, (1.1, 1.3))).any()
+    place = {"on": "row", "position": (x, y, 0.0)}
+    entries = [
+        ObjectSpec.model_validate(entry)
+        for entry in (
+            {"name": "row", "asset": asset.name, "position": (0.0, 0.0, 0.0)},
+            {"name": "high", "asset": "cup_01", **place},
+            {"name": "low", "asset": "cup_01", "level": (0.8, 1.1), **place},
+        )
+    ]
+    assets = {entry.name: stock.asset(entry.asset) for entry in entries}
+    poses = arranged(entries, assets, None)
+    assert poses["low"].position_m[2] == pytest.approx(worktop + 0.001, abs=1e-3)
+    assert poses["high"].position_m[2] == pytest.approx(top + 0.001, abs=1e-3)
+    with pytest.raises(ValidationError, match=r"must be \[least, most\]"):
+        ObjectSpec.model_validate({"name": "low", "asset": "cup_01", "level": (2, 1), **place})
+
+
+def test_a_hood_hangs_over_the_hob_of_a_row_and_nowhere_else(stock: AssetIndex) -> None:
+    with_hob = 0
+    for seed in range(12):
+        asset = stock.asset(f"kitchen_unit~wall:{seed}")
+        hoods = [part for part in asset.parts if part.category == "hood"]
+        hob = stock.let_in(asset.name).get("stove")
+        assert len(hoods) == int(hob is not None)
+        with_hob += len(hoods)
+        for hood in hoods:
+            points = np.concatenate([asset.model.parts[k].mesh.positions for k in hood.meshes])
+            assert hob is not None
+            low, high = hob
+            assert points[:, 1].min() < (low + high)[1] / 2.0 < points[:, 1].max()
+    assert 0 < with_hob < 12
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_kitchen_has_a_place_to_cook(stock: AssetIndex, seed: int) -> None:
+    pieces = rules_of().kind("kitchen").furniture
+    room = furnisher(stock, seed)
+    assert room.furnish(pieces)
+    hobs = [item for item in room.items if stock.has(item.asset, "stove") or item.base == "stove"]
+    assert hobs
+    assert any(item.needed for item in hobs)
+    # Beside a row without a hob stands a cooker, and nowhere else one.
+    rows = [item for item in room.items if item.base in ("kitchen row", "kitchen wall")]
+    cookers = [item for item in room.items if item.base in ("cooker", "stove")]
+    assert not (rows and stock.has(rows[0].asset, "stove") and cookers)
+
+
+def test_a_room_without_space_to_cook_is_refused(stock: AssetIndex) -> None:
+    room = furnisher(stock, 0)
+    room.plan.stand([Block(x=0.0, y=0.0, half_x=HALF[0], half_y=HALF[1])], [])
+    cooker = next(p for p in rules_of().kind("kitchen").furniture if p.put == "cooker")
+    assert not room.furnish([cooker])
 
 
 @pytest.mark.parametrize("asset", ["armchair~tub:1", "armchair~shell:2", "sofa~rolled:1"])

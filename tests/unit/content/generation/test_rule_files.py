@@ -27,7 +27,10 @@ def _changed(folder: Path, file: str, old: str, new: str) -> list[str]:
     path.write_text(text.replace(old, new, 1))
     known = SceneLibrary().knowledge
     with pytest.raises(SceneError) as caught:
-        read_rules(folder, assets=known.assets, surfaces=known.surfaces, skies=known.skies)
+        read_rules(
+            folder, assets=known.assets, categories=known.categories, surfaces=known.surfaces,
+            skies=known.skies,
+        )  # fmt: skip
     return str(caught.value).splitlines()
 
 
@@ -36,6 +39,7 @@ def test_the_packages_own_rules_are_well() -> None:
     rules = read_rules(
         resource_path("config", "rooms"),
         assets=known.assets,
+        categories=known.categories,
         surfaces=known.surfaces,
         skies=known.skies,
     )
@@ -63,6 +67,9 @@ def test_the_packages_own_rules_are_well() -> None:
         ("library/materials.yaml", "oak_parquet]", "oak_parket]", "there is no material"),
         ("library/light.yaml", "sunrise,", "sunrize,", "there is no sky 'sunrize'"),
         ("apartment.yaml", "kind: kitchen", "kind: kitschen", "there is no kind of room"),
+        ("kitchen.yaml", "lacking: stove", "lacking: stofe", "there is no category 'stofe'"),
+        ("library/furniture.yaml", "lacking: stove", "lacking: stov", "did you mean 'stove'?"),
+        ("library/things.yaml", "[0.8, 1.1]", "[1.1, 0.8]", "must be [least, most]"),
         ("bathroom.yaml", "[vanity]", "[vanty]", "there is no piece 'vanty'"),
         ("apartment.yaml", "name: bedroom, ", "", "is a room and must have a name"),
     ],

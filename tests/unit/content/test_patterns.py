@@ -1,0 +1,56 @@
+"""Fine structures of surfaces: they tile without a seam, and wood has the grain of wood."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from sailenv_content.standard.patterns import PATTERNS, pattern_maps
+
+GRAIN = PATTERNS["grain"]
+
+
+def tile(name: str) -> NDArray[np.float64]:
+    """Return the brightness of a tile, 0 to 1."""
+    return pattern_maps(PATTERNS[name])["base_colour_texture"][..., 0] / 255.0
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+def test_a_tile_goes_on_at_its_edges(name: str) -> None:
+    bright = tile(name)
+    for axis in (0, 1):
+        inside = np.abs(np.diff(bright, axis=axis)).mean()
+        seam = np.abs(bright.take(0, axis) - bright.take(-1, axis)).mean()
+        assert seam < 2.0 * inside + 0.01
+
+
+def test_wood_has_little_contrast() -> None:
+    bright = tile("grain")
+    assert 0.03 < bright.std() / bright.mean() < 0.06
+    assert bright.min() > 0.65 * bright.max()
+
+
+def test_grain_runs_along_u() -> None:
+    across, along = (np.abs(np.diff(tile("grain"), axis=axis)).mean() for axis in (0, 1))
+    assert across > 5.0 * along
+
+
+def test_growth_lines_are_as_near_as_in_wood() -> None:
+    """Most of what changes across the fibres does so in 2 to 20 mm."""
+    bright = tile("grain")
+    mm = 1000.0 * GRAIN.tile_m / len(bright)
+    assert mm < 1.2
+    power = (np.abs(np.fft.rfft(bright - bright.mean(), axis=0)) ** 2).mean(axis=1)
+    waves_mm = 1000.0 * GRAIN.tile_m / np.arange(1, len(power))
+    share = power[1:] / power[1:].sum()
+    assert share[(waves_mm > 2.0) & (waves_mm < 20.0)].sum() > 0.5
+    assert share[(waves_mm > 20.0) & (waves_mm < 100.0)].sum() < 0.25  # the stripes of zebrano
+
+
+def test_flat_sawn_arches_are_there_too() -> None:
+    """In some places, a few in a hundred, lines cross the fibres."""
+    up, right = np.gradient(tile("grain"))
+    steep = np.hypot(up, right) > np.percentile(np.hypot(up, right), 50.0)
+    crossing = (np.abs(right) > 0.5 * np.abs(up)) & steep
+    assert 0.005 < crossing[steep].mean() < 0.1
