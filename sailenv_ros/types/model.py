@@ -294,11 +294,6 @@ class Asset:
         if taken and not self._body_meshes:
             raise AssetError(self.name, "its parts take all meshes; one must be left to the body")
 
-    def feels_like(self, other: Asset) -> bool:
-        """Return whether another one differs in looks alone: physics has the same body of both."""
-        names = ("collision", "mass_kg", "centre_of_mass_m", "parts", "moving", "rig", "inertia")
-        return all(getattr(self, name) == getattr(other, name) for name in names)
-
     @property
     def body_model(self) -> Model:
         """Visible geometry of the body: the model without its labelled parts."""

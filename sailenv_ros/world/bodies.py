@@ -169,20 +169,6 @@ class Body:
             vx, vy, vz = vx - (wy * z - wz * y), vy - (wz * x - wx * z), vz - (wx * y - wy * x)
         return (vx, vy, vz), (wx, wy, wz)
 
-    def repaint(self, placement: Placement) -> bool:
-        """Take the looks of another placement if these are all that differs; tell if so.
-
-        The engine knows nothing of them: it keeps the body, and what rests upon it sleeps on.
-        """
-        mine = self.placement
-        if not mine.static or mine.asset.rig is not None:
-            return False
-        alike = replace(placement, asset=mine.asset, entry=mine.entry, pose=mine.pose)
-        if alike != mine or not placement.asset.feels_like(mine.asset):
-            return False
-        self.placement = replace(placement, pose=self._static_pose)
-        return True
-
     def rebuilt(self, placement: Placement) -> Body:
         """Make the body that another placement says, in the place and the motion of this one.
 

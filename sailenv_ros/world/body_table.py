@@ -25,6 +25,7 @@ from sailenv_ros.world.labelled_pieces import LabelledPiece, find_piece, pieces_
 from sailenv_ros.world.last_poses import LastPoses
 from sailenv_ros.world.person_body import deformations_of, skeletons_of
 from sailenv_ros.world.placement import Placement
+from sailenv_ros.world.repainting import repaint
 
 __all__ = ["BodyTable"]
 
@@ -256,8 +257,8 @@ class BodyTable:
             self.joints.require_nothing_on(old, "to be renamed")
         if not placement.static and placement.joint is None:
             self.joints.require_nothing_on(old, "that moves freely")
-        if old.repaint(placement):
-            self._pieces = None
+        self._pieces = None
+        if repaint(old, placement):
             return
         new = old.rebuilt(placement)
         self.wake_neighbours(old)
@@ -269,12 +270,9 @@ class BodyTable:
             new.remove()
             raise
         old.remove()
-        self._pieces = None
 
     def replace_room(self, placements: Iterable[Placement], without: Collection[int] = ()) -> None:
-        """Exchange all parts of the room, and take out others by their ids.
-
-        A part of the same name keeps its id.
+        """Exchange all parts of the room, and take out others; parts of a same name keep their id.
 
         Raises
         ------

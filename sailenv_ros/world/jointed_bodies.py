@@ -70,7 +70,7 @@ class JointedBody(Body):
     def __init__(self, client: BulletClient, placement: Placement) -> None:
         assert placement.joint is not None
         self.joint: JointPlacement = placement.joint
-        self._free = placement.joint.spec.type == "free"
+        self.is_free = placement.joint.spec.type == "free"  # the first of its tree, held by nothing
         self.tree: JointTree | None = None
         self.parent: Body | None = None
         self._number = 0
@@ -119,11 +119,6 @@ class JointedBody(Body):
     def place(self) -> int:
         """Place in its tree."""
         return self._number
-
-    @property
-    def is_free(self) -> bool:
-        """True if nothing holds it: it is the first of its tree, and moves as physics has it."""
-        return self._free
 
     def joint_state(self) -> tuple[float, float]:
         """Return position and velocity of its joint [rad, rad/s] or [m, m/s]."""
