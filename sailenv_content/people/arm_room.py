@@ -19,6 +19,9 @@ _ARM = re.compile(r"(clavicle|shoulder01|upperarm01|lowerarm01|wrist|finger.*)\.
 _OFF_M = 0.014
 """Between an arm and what is worn on the body [m]."""
 
+_CURLED = 0.15
+"""How much farther in than a forearm the fingers of a hand at ease reach, over its length."""
+
 _BESIDE_M = 0.14
 """How far before or behind an arm a body is beside it [m]."""
 
@@ -54,4 +57,5 @@ def arms_out(rig: Rig, parts: Sequence[PersonPart]) -> float:
     near = (below > upper + _RESTS * lower) & (below < upper + lower + hand)
     near &= np.abs(places[:, 0] - shoulder[0]) < _BESIDE_M
     wide = places[near, 1] + float(np.median(thick)) + _OFF_M - shoulder[1]
+    wide += np.where(below[near] > upper + lower, _CURLED * hand, 0.0)
     return float(np.clip((wide / below[near]).max(initial=0.0), 0.0, _MOST))
