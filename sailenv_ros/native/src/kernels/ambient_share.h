@@ -58,8 +58,6 @@ LANES_INLINE float arriving_factor(uint16_t ambient, int32_t visibility) {
     return 1.0f - (share < 1.0f ? share : 1.0f) * closed;
 }
 
-typedef uint16_t u8_any __attribute__((vector_size(16), aligned(2), may_alias));
-
 // Eight halves by their bits.
 LANES_INLINE i8 load_half_bits(const uint16_t* p) {
     return __builtin_convertvector(*reinterpret_cast<const u8_any*>(p), i8);

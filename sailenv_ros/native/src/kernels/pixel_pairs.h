@@ -5,6 +5,8 @@
 
 namespace sailenv {
 
+typedef uint16_t u8_any __attribute__((vector_size(16), aligned(2), may_alias));
+
 // One number for each of two pixels. Of eight scalars side by side GCC makes stores and a load that
 // waits for them.
 LANES_INLINE f8 for_pair(float a, float b) {
@@ -17,12 +19,10 @@ LANES_INLINE f8 for_pair(float a, float b) {
 
 // Writes the bits of eight halves; the fourth numbers of both pixels stay as they were given.
 LANES_INLINE void store_pair(uint16_t* made, i8 halves, const uint16_t* given) {
-    typedef uint16_t halves8 __attribute__((vector_size(16)));
-    typedef uint16_t halves8_any __attribute__((vector_size(16), aligned(2), may_alias));
-    const halves8 fourth = {0, 0, 0, 0xffff, 0, 0, 0, 0xffff};
-    const halves8 kept = *reinterpret_cast<const halves8_any*>(given);
-    const halves8 found = __builtin_convertvector(halves, halves8);
-    *reinterpret_cast<halves8_any*>(made) = (found & ~fourth) | (kept & fourth);
+    const u8_any fourth = {0, 0, 0, 0xffff, 0, 0, 0, 0xffff};
+    const u8_any kept = *reinterpret_cast<const u8_any*>(given);
+    const u8_any found = __builtin_convertvector(halves, u8_any);
+    *reinterpret_cast<u8_any*>(made) = (found & ~fourth) | (kept & fourth);
 }
 
 // `finish(at, pixels, given)` returns the bits of two pixels from the eight halves of these; of the
