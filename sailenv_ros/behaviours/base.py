@@ -43,8 +43,9 @@ MAX_SPEED_M_S = 10.0
 """No behaviour drives a body faster: in one step it then covers less than half a thin wall."""
 
 
-# Made once: of a joint a state is asked for in each step.
-_UNIT_INERTIA, _NO_PLANES, _IN_ORIGIN = np.ones(3), np.zeros((0, 4)), np.zeros(3)
+# Made once and read-only: of a joint a state is asked for in each step.
+_UNIT_INERTIA, _IN_ORIGIN = np.broadcast_to(1.0, 3), np.broadcast_to(0.0, 3)
+_NO_PLANES = np.zeros((0, 4))
 
 
 class BehaviourParameters(BaseModel):
