@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import STEP_S
 from sailenv_ros.postures.easing import smoother_step
 from sailenv_ros.postures.footsteps import Moment
-from sailenv_ros.postures.grasping import Grip, Side, with_fingers
+from sailenv_ros.postures.grasping import Grip, with_fingers
 from sailenv_ros.postures.reaching import reaching_posture, with_carrying_arm
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.world.activities.base import Actor, Held, Instant, Place
-from sailenv_ros.world.activities.hand import GRIP_S, REACH_S, HandActivity
+from sailenv_ros.world.activities.hand import GRIP_S, REACH_S, HandActivity, reaching_hand
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.surfaces import free_spots
@@ -59,11 +59,7 @@ class _Handling(HandActivity):
             own = invert(world_from_body)
             goal = (own[:3, :3] @ self._goal + own[:3, 3]) / self._actor.scale
             stands = walking_posture(self._actor.rig, moment, 0.0)
-            for side in self._hands(goal):
-                self._grip = self._grip.by(side)
-                self._reaches = reaching_posture(self._actor.rig, stands, moment, goal, self._grip)
-                if self._reaches is not None:
-                    break
+            self._reaches = reaching_posture(self._actor.rig, stands, moment, goal, self._grip)
         self._done_s += STEP_S
         return self._reaches is not None and self._goes_on
 
@@ -82,10 +78,6 @@ class _Handling(HandActivity):
         reaches = with_fingers(rig, self._reaches, self._grip, self._holds)
         return self._between(begin, reaches, share, now.moment)
 
-    @abstractmethod
-    def _hands(self, goal: Doubles) -> tuple[Side, ...]:
-        """Return the hands that may reach for a place of the body frame, the first before."""
-
     @property
     @abstractmethod
     def _carries(self) -> bool:
@@ -100,8 +92,7 @@ class _Handling(HandActivity):
 class Taking(_Handling):
     """A person who takes a thing; parameters as `_Handling`, and the thing."""
 
-    def __init__(self, actor: Actor, body: Body, feet: Place, yaw: float) -> None:
-        grip = grip_of(body, actor.scale, yaw)
+    def __init__(self, actor: Actor, body: Body, grip: Grip, feet: Place, yaw: float) -> None:
         super().__init__(actor, body.placement.name, _middle(body), grip, feet, yaw)
         self._body = body
         self._held: Held | None = None
@@ -119,9 +110,6 @@ class Taking(_Handling):
                 turn=self._turn.T @ matrix[:3, :3],
             )
         return self._held
-
-    def _hands(self, goal: Doubles) -> tuple[Side, ...]:
-        return self._actor.hands(goal)
 
     @property
     def _carries(self) -> bool:
@@ -141,9 +129,6 @@ class Putting(_Handling):
     def held(self, before: Held | None) -> Held | None:
         """Return what is in the hand now."""
         return None if self._gripped and self._reaches is not None else before
-
-    def _hands(self, goal: Doubles) -> tuple[Side, ...]:
-        return (self._grip.side,)
 
     @property
     def _carries(self) -> bool:
@@ -187,9 +172,14 @@ def ways_to_take(actor: Actor, crowd: Crowd, size: BodySize, name: str) -> Itera
     body = crowd.body(name)
     if body is None or not can_be_taken(body):
         return
-    x, y, _ = _middle(body).tolist()
+    goal = _middle(body)
+    x, y, _ = goal.tolist()
     for feet in crowd.places_beside(actor.name, size, (x, y), _FARTHEST_M):
-        yield Taking(actor, body, feet, float(np.arctan2(y - feet[1], x - feet[0])))
+        yaw = float(np.arctan2(y - feet[1], x - feet[0]))
+        grip = grip_of(body, actor.scale, yaw)
+        side = reaching_hand(actor, grip, feet, yaw, goal[None])
+        if side is not None:
+            yield Taking(actor, body, grip.by(side), feet, yaw)
 
 
 def ways_to_put(
@@ -205,7 +195,8 @@ def ways_to_put(
         for feet in crowd.places_beside(actor.name, size, (spot[0], spot[1]), _FARTHEST_M, count=1):
             goal = spot + np.array([0.0, 0.0, 0.5 * float(extent[2]) + _ABOVE_M])
             yaw = float(np.arctan2(spot[1] - feet[1], spot[0] - feet[0]))
-            yield Putting(actor, held, goal, feet, yaw)
+            if reaching_hand(actor, held.grip, feet, yaw, goal[None], (held.grip.side,)):
+                yield Putting(actor, held, goal, feet, yaw)
 
 
 def _size(body: Body) -> Doubles:

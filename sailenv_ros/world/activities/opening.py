@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import STEP_S, JointMotion, running_motion
 from sailenv_ros.postures.easing import smooth_step
-from sailenv_ros.postures.footsteps import Moment, moment_of, standing_feet
+from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.grasping import Grip, Side, with_fingers
 from sailenv_ros.postures.reaching import reaching_posture
 from sailenv_ros.postures.skeleton import Posture
@@ -17,7 +17,7 @@ from sailenv_ros.postures.walking import walking_posture
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.types.geometry import Pose, invert
 from sailenv_ros.world.activities.base import Actor, Instant, Place
-from sailenv_ros.world.activities.hand import GRIP_S, REACH_S, HandActivity
+from sailenv_ros.world.activities.hand import GRIP_S, REACH_S, HandActivity, reaching_hand
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.kinematics import link_pose
@@ -148,29 +148,12 @@ def ways_to_open(actor: Actor, crowd: Crowd, size: BodySize, name: str) -> list[
         for feet in crowd.places_beside(actor.name, size, (middle[0], middle[1]), 1.1, count=16):
             if _fits(np.asarray(feet), path[:, :2], axis[:2], box, joint):
                 yaw = float(np.arctan2(middle[1] - feet[1], middle[0] - feet[0]))
-                side = _reaching_hand(actor, feet, yaw, path[::3])
+                side = reaching_hand(actor, _GRIP, feet, yaw, path[::3])
                 if side is not None:
                     found.append(Opening(actor, body, handle, goal, feet, yaw, side))
             if len(found) >= _MOST_WAYS:
                 return found
     return found
-
-
-def _reaching_hand(actor: Actor, feet: Place, yaw: float, path: Doubles) -> Side | None:
-    """Return the hand with which one who stands somewhere gets to (N, 3) places of the world."""
-    c, s = float(np.cos(yaw)), float(np.sin(yaw))
-    x, y = path[:, 0] - feet[0], path[:, 1] - feet[1]
-    goals = np.column_stack([c * x + s * y, c * y - s * x, path[:, 2] - actor.floor_m])
-    goals /= actor.scale
-    moment = moment_of(standing_feet(0.0, 0.0, 0.0, actor.figure.stride))
-    stands = walking_posture(actor.rig, moment, 0.0)
-    for side in actor.hands(goals[0]):
-        grip = _GRIP.by(side)
-        if all(
-            reaching_posture(actor.rig, stands, moment, goal, grip) is not None for goal in goals
-        ):
-            return side
-    return None
 
 
 def _fits(feet: Doubles, path: Doubles, axis: Doubles, box: Doubles, joint: JointPlacement) -> bool:

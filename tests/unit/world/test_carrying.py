@@ -154,10 +154,19 @@ def test_what_no_hand_takes_is_refused(more: tuple[Placement, ...]) -> None:
 def test_what_is_too_high_stays_where_it_is() -> None:
     shelf = furniture("shelf", "shelf", [((0.4, 0.6, 2.1), (0.0, 0.0, 0.0))])
     world, anna = room(placed("shelf", shelf, -1.5, -1.5, static=True), thing(-1.4, -1.5, 2.1))
-    if anna.walker.take("thing"):
-        until_standing(world, anna)
-    assert anna.walker.holds == ""
+    assert not anna.walker.take("thing")
+    assert anna.walker.activity == "standing"
     assert body(world, "thing").pose().position_m[2] == pytest.approx(2.1, abs=0.01)
+    world.close()
+
+
+def test_nothing_is_carried_to_where_no_hand_gets() -> None:
+    high = furniture("shelf", "shelf", [((0.4, 0.6, 2.1), (0.0, 0.0, 0.0))])
+    world, anna = room(thing(0.2, 0.2, 0.7), placed("high", high, -1.5, -1.5, static=True))
+    assert anna.walker.take("thing")
+    until_standing(world, anna)
+    assert not anna.walker.put_on("high")
+    assert anna.walker.holds == "thing"
     world.close()
 
 
