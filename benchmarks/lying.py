@@ -20,10 +20,10 @@ from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Model
+from sailenv_ros.world.height_fields import heights_at
 from sailenv_ros.world.mover import Mover
 from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.placement import Placement
-from sailenv_ros.world.seats import heights_at
 from sailenv_ros.world.skin import contact_skin
 from sailenv_ros.world.world import World
 

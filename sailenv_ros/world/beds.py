@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.geometry import invert
-from sailenv_ros.types.model import Model
 from sailenv_ros.world.bodies import Body
-from sailenv_ros.world.seats import Seat, heights_at, heights_over
+from sailenv_ros.world.height_fields import STEP_M, HeightField, height_field_of
+from sailenv_ros.world.seats import Seat
 
 __all__ = ["BED_CATEGORIES", "Lane", "lanes_of"]
 
@@ -26,7 +25,6 @@ BED_CATEGORIES = frozenset({"bed", "couch"})
 LOWEST_M, HIGHEST_M = 0.2, 0.75
 """Heights of what is lain upon [m]."""
 
-_STEP_M = 0.02
 _DIP_M = 0.08
 _PILLOW_M, _CUSHION_M = 0.25, 0.09
 """How much higher than the rest a bed, and a couch, may be below a body [m]."""
@@ -59,12 +57,8 @@ class Lane:
         From `head` to where the pillow ends [m]; 0 for none.
     edges : tuple of (2,) float64
         Unit vectors out of the bed, to sides from which one gets in; see `seat`.
-    model : Model
-    scale : (3,) tuple of float
+    field : HeightField
         Of the piece.
-    piece_from_world : (4, 4) float64
-    grid : tuple of (X,), (Y,), (X, Y) float64
-        Places along the piece's axes, and heights there [m].
     """
 
     name: str
@@ -74,46 +68,13 @@ class Lane:
     open_end: bool
     pillow_m: float
     edges: tuple[Doubles, ...]
-    model: Model
-    scale: tuple[float, float, float]
-    piece_from_world: Doubles
-    grid: tuple[Doubles, Doubles, Doubles]
-
-    def exact_heights(self, places: Doubles) -> Doubles:
-        """Return (N,) heights as `heights` does, each by a ray of its own."""
-        matrix = self.piece_from_world
-        own = places @ matrix[:2, :2].T + matrix[:2, 3]
-        found = heights_at(self.model, self.scale, own)
-        return np.where(found < 0.0, -np.inf, found - float(matrix[2, 3]))
-
-    def heights(self, places: Doubles) -> Doubles:
-        """Return (N,) heights of the piece at (N, 2) places of the world; -inf for none [m]."""
-        x, y, grid = self.grid
-        matrix = self.piece_from_world
-        own = places @ matrix[:2, :2].T + matrix[:2, 3]
-        cells = (own - [x[0], y[0]]) / _STEP_M
-        first = np.floor(cells).astype(np.int64)
-        there = (first >= 0).all(axis=1) & (first < np.array(grid.shape) - 1).all(axis=1)
-        row, column = first[there].T
-        u, v = (cells[there] - first[there]).T
-        found = np.full(len(places), -np.inf)
-        found[there] = (1.0 - u) * ((1.0 - v) * grid[row, column] + v * grid[row, column + 1]) + (
-            u * ((1.0 - v) * grid[row + 1, column] + v * grid[row + 1, column + 1])
-        )
-        # Beside an edge the mean of a surface and of nothing is neither.
-        nearest = grid[row + (u > 0.5), column + (v > 0.5)]
-        found[there] = np.where(
-            np.minimum.reduce([grid[row + i, column + k] for i in (0, 1) for k in (0, 1)]) < 0.0,
-            np.where(nearest < 0.0, -np.inf, nearest),
-            found[there],
-        )
-        return found - float(matrix[2, 3])
+    field: HeightField
 
     def seat(self, edge: Doubles, from_head_m: float) -> Seat | None:
         """Return the place on an edge where one sits before one lies down."""
         middle = self.head - from_head_m * self.way
-        steps = np.arange(0.0, 2.0, _STEP_M)
-        tops_m = self.heights(middle + steps[:, None] * edge)
+        steps = np.arange(0.0, 2.0, STEP_M)
+        tops_m = self.field.at(middle + steps[:, None] * edge)
         outside = np.flatnonzero(tops_m < tops_m[0] - 0.12)
         if not len(outside):
             return None
@@ -135,9 +96,8 @@ def lanes_of(body: Body) -> tuple[Lane, ...]:
     matrix = body.world_from_body()
     if placement.asset.category not in BED_CATEGORIES or matrix[2, 2] < 0.98:
         return ()
-    low, high = placement.asset.model.bounds() * np.asarray(placement.scale)
-    x, y = (np.arange(low[k], high[k] + _STEP_M, _STEP_M) for k in (0, 1))
-    heights = heights_over(placement.asset.model, placement.scale, x, y)
+    field = height_field_of(body)
+    heights = field.heights
     level = heights[(heights > LOWEST_M) & (heights < HIGHEST_M)]
     if not len(level):
         return ()
@@ -145,7 +105,7 @@ def lanes_of(body: Body) -> tuple[Lane, ...]:
     is_couch = placement.asset.category == "couch"
     usable = (heights > rest - _DIP_M) & (heights < rest + (_CUSHION_M if is_couch else _PILLOW_M))
     lanes = _couch_lanes(usable) if is_couch else _bed_lanes(usable, heights)
-    return tuple(_lane(body, matrix, (x, y, heights), *lane, is_couch) for lane in lanes)
+    return tuple(_lane(body, matrix, field, *lane, is_couch) for lane in lanes)
 
 
 _Run = tuple[int, int, int]
@@ -157,8 +117,8 @@ def _bed_lanes(usable: NDArray[np.bool_], heights: Doubles) -> Iterator[_Run]:
     across = np.flatnonzero(usable.mean(axis=0) > 0.5)
     if not len(across):
         return
-    count = max(1, int(len(across) * _STEP_M / _SHARE_M))
-    half = round(0.5 * _WIDTH_M / _STEP_M)
+    count = max(1, int(len(across) * STEP_M / _SHARE_M))
+    half = round(0.5 * _WIDTH_M / STEP_M)
     for number in range(count):
         # One may lie anywhere, several keep apart.
         away = 0.5 if count == 1 else 0.17
@@ -191,7 +151,7 @@ def _couch_lanes(usable: NDArray[np.bool_]) -> Iterator[_Run]:
 
 
 def _clear(usable: NDArray[np.bool_], middle: int, width_m: float) -> NDArray[np.bool_]:
-    half = round(0.5 * width_m / _STEP_M)
+    half = round(0.5 * width_m / STEP_M)
     if middle < half or middle + half >= usable.shape[1]:
         return np.zeros(usable.shape[0], np.bool_)
     found: NDArray[np.bool_] = usable[:, middle - half : middle + half + 1].mean(axis=1) > 0.96
@@ -211,13 +171,13 @@ def _longest(clear: NDArray[np.bool_]) -> tuple[int, int] | None:
 def _lane(
     body: Body,
     matrix: Doubles,
-    grid: tuple[Doubles, Doubles, Doubles],
+    field: HeightField,
     middle: int,
     first: int,
     last: int,
     is_couch: bool,
 ) -> Lane:
-    x, y, heights = grid
+    x, y, heights = field.x, field.y, field.heights
     if is_couch:
         profile = heights[max(middle - 4, 0) : middle + 5, first : last + 1].mean(axis=0)
         # The head where it is higher, if anywhere.
@@ -234,26 +194,23 @@ def _lane(
         if abs(y[middle] - 0.5 * (y[0] + y[-1])) > 0.2:
             edges = edges[:1]
     turn = matrix[:2, :2]
-    beyond = head - ((last - first + 1) * _STEP_M + np.array([0.04, 0.1]))[:, None] * way
-    cells = np.rint((beyond - [x[0], y[0]]) / _STEP_M).astype(np.int64)
+    beyond = head - ((last - first + 1) * STEP_M + np.array([0.04, 0.1]))[:, None] * way
+    cells = np.rint((beyond - [x[0], y[0]]) / STEP_M).astype(np.int64)
     inside = ((cells >= 0) & (cells < heights.shape)).all(axis=1)
     # Not by the last step alone, where a mattress is round.
     open_end = bool((heights[tuple(cells[inside].T)] < profile[-6:].max() + 0.02).all())
-    near = profile[: round(0.9 / _STEP_M)]
+    near = profile[: round(0.9 / STEP_M)]
     raised = near > near[15:].min(initial=np.inf) + 0.035
     start = int(np.argmax(raised)) if raised.any() else 0
     flat = np.flatnonzero(~raised[start:])
-    pillow = (start + int(flat[0])) * _STEP_M if raised.any() and len(flat) and start < 15 else 0.0
+    pillow = (start + int(flat[0])) * STEP_M if raised.any() and len(flat) and start < 15 else 0.0
     return Lane(
         name=body.placement.name,
         head=turn @ head + matrix[:2, 3],
         way=turn @ way,
-        length_m=(last - first + 1) * _STEP_M,
+        length_m=(last - first + 1) * STEP_M,
         open_end=open_end,
         pillow_m=pillow,
         edges=tuple(turn @ edge for edge in edges),
-        model=body.placement.asset.model,
-        scale=body.placement.scale,
-        piece_from_world=invert(matrix),
-        grid=grid,
+        field=field,
     )

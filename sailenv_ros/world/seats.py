@@ -11,12 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.rays.scene_geometry import SceneGeometry
-from sailenv_ros.types.instance_states import InstanceStates
-from sailenv_ros.types.model import Model
 from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.height_fields import STEP_M, heights_over
 
-__all__ = ["SEAT_CATEGORIES", "Seat", "heights_at", "heights_over", "seats_of"]
+__all__ = ["SEAT_CATEGORIES", "Seat", "seats_of"]
 
 Doubles = NDArray[np.float64]
 
@@ -25,11 +23,8 @@ SEAT_CATEGORIES = frozenset({"chair", "couch", "bench", "bed", "stool"})
 LOWEST_M, HIGHEST_M = 0.30, 0.64
 """Heights of what is sat upon [m]."""
 
-_STEP_M = 0.02
 _BACK_M = 0.10
 """Height above the seat from which something is its back [m]."""
-
-_ABOVE_M = 3.0
 
 PLACE_M = 0.66
 """Width that one who sits takes [m]."""
@@ -74,7 +69,7 @@ def seats_of(body: Body) -> tuple[Seat, ...]:
     width = float(high[1] - low[1])
     count = max(1, int((width - 0.12) / PLACE_M))
     middles = [float(low[1] + width * (number + 0.5) / count) for number in range(count)]
-    along = np.arange(high[0] - 0.5 * _STEP_M, low[0], -_STEP_M)
+    along = np.arange(high[0] - 0.5 * STEP_M, low[0], -STEP_M)
     found = []
     for y in middles:
         across = np.array([y - 0.11, y, y + 0.11])
@@ -97,10 +92,10 @@ def _seat_at(body: Body, matrix: Doubles, along: Doubles, tops: Doubles, y: floa
     rises = np.flatnonzero((heights > height + _BACK_M) & (np.arange(len(heights)) > first))
     ends = np.flatnonzero((heights < height - _BACK_M) & (np.arange(len(heights)) > first))
     stop = min([len(heights), *rises[:1].tolist(), *ends[:1].tolist()])
-    depth = (stop - first) * _STEP_M
+    depth = (stop - first) * STEP_M
     if depth < LEAST_DEPTH_M:
         return None
-    front = matrix @ np.array([along[first] + 0.5 * _STEP_M, y, 0.0, 1.0])
+    front = matrix @ np.array([along[first] + 0.5 * STEP_M, y, 0.0, 1.0])
     return Seat(
         name=body.placement.name,
         x=float(front[0]),
@@ -109,28 +104,3 @@ def _seat_at(body: Body, matrix: Doubles, along: Doubles, tops: Doubles, y: floa
         height_m=float(np.max(heights[first + 2 : first + 12], initial=height)),
         depth_m=depth,
     )
-
-
-def heights_over(
-    model: Model, scale: tuple[float, float, float], along: Doubles, across: Doubles
-) -> Doubles:
-    """Return (X, Y): heights of the highest surface over places of a model; -1 for none [m]."""
-    x, y = np.meshgrid(along, across, indexing="ij")
-    found = heights_at(model, scale, np.stack([x, y], axis=-1).reshape(-1, 2))
-    return found.reshape(x.shape)
-
-
-def heights_at(model: Model, scale: tuple[float, float, float], places: Doubles) -> Doubles:
-    """Return (N,): the same over (N, 2) places."""
-    origins = np.column_stack([places, np.full(len(places), _ABOVE_M)])
-    states = InstanceStates(
-        ids=np.array([1], np.uint16),
-        positions=np.zeros((1, 3)),
-        orientations=np.array([[0.0, 0.0, 0.0, 1.0]]),
-        linear_velocities=np.zeros((1, 3)),
-        angular_velocities=np.zeros((1, 3)),
-        scales=np.array([scale]),
-    )
-    down = np.broadcast_to(np.array([0.0, 0.0, -1.0]), origins.shape)
-    hits = SceneGeometry({1: model}).cast(states, origins, down)
-    return np.where(np.isfinite(hits.distance), _ABOVE_M - hits.distance, -1.0)

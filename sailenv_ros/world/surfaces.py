@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.world.bodies import Body
-from sailenv_ros.world.seats import heights_over
+from sailenv_ros.world.height_fields import height_field_of
 
 __all__ = ["away_from", "free_spots"]
 
@@ -41,8 +41,8 @@ def free_spots(body: Body, others: Iterable[Body], around_m: float) -> list[Doub
     if matrix[2, 2] < 0.98:
         return []
     low, high = placement.asset.model.bounds() * np.asarray(placement.scale)
-    x, y = (np.arange(low[k], high[k] + _STEP_M, _STEP_M) for k in (0, 1))
-    heights = heights_over(placement.asset.model, placement.scale, x, y)
+    field = height_field_of(body, _STEP_M)
+    heights = field.heights
     reach = int(np.ceil((around_m + _APART_M) / _STEP_M))
     side = 2 * reach + 1
     if min(heights.shape) < side:
@@ -51,7 +51,7 @@ def free_spots(body: Body, others: Iterable[Body], around_m: float) -> list[Doub
     level = np.ptp(windows, axis=(2, 3)) < _LEVEL_M
     rows, columns = np.nonzero(level)
     found = np.column_stack(
-        [x[rows + reach], y[columns + reach], heights[rows + reach, columns + reach]]
+        [field.x[rows + reach], field.y[columns + reach], heights[rows + reach, columns + reach]]
     )
     spots = found @ matrix[:3, :3].T + matrix[:3, 3]
     spots = spots[(spots[:, 2] > _LOWEST_M) & (spots[:, 2] < _HIGHEST_M)]

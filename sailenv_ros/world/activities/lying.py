@@ -91,7 +91,7 @@ class Lying(SpotActivity):
     def __init__(self, actor: Actor, lane: Lane, seat: Seat, hips_m: float) -> None:
         self._actor, self._lane = actor, lane
         self._hips = lane.head - hips_m * lane.way
-        self._sitting = Sitting(actor, seat, lane.heights)
+        self._sitting = Sitting(actor, seat, lane.field.at)
         self.feet, self.yaw, self.piece = self._sitting.feet, self._sitting.yaw, lane.name
         self.takes = tuple(
             (float(x), float(y))
@@ -149,12 +149,12 @@ class Lying(SpotActivity):
         def own(over: Callable[[Doubles], Doubles]) -> Callable[[Doubles], Doubles]:
             return lambda at: (over(scale * at @ turn.T + origin) - actor.floor_m) / scale
 
-        heights, skin = own(self._lane.heights), contact_skin(actor.asset)
+        heights, skin = own(self._lane.field.at), contact_skin(actor.asset)
         ground = Ground(heights=heights, skin=skin.places, joints=skin.joints)
         hips = turn.T @ (self._hips - origin) / scale
         head_way = turn.T @ self._lane.way
         lies = lying_posture(rig, ground, hips, head_way)
-        exact = depths(replace(ground, heights=own(self._lane.exact_heights)), lies)
+        exact = depths(replace(ground, heights=own(self._lane.field.exact)), lies)
         raised = np.array([0.0, 0.0, _too_deep(exact, _BESIDE_M[0])])
         lies = replace(lies, root_m=lies.root_m + raised)
         seated = self._sitting.seated_posture()
@@ -211,7 +211,7 @@ def _is_empty(lane: Lane, crowd: Crowd) -> bool:
     """Return whether nothing lies on a lane."""
     way = np.arange(0.1, lane.length_m, _SPACING_M)
     places = lane.head - way[:, None] * lane.way
-    spots = np.column_stack([places, lane.heights(places)])
+    spots = np.column_stack([places, lane.field.at(places)])
     return all(
         bool(away_from(other, spots, _BESIDE_LANE_M).all())
         for other in crowd.bodies(without=lane.name)
