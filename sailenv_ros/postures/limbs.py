@@ -66,10 +66,19 @@ def bend_bones(
         Where the joint between them points.
     """
     (begin, middle, end), (top, joint, tip) = rest, bent
+    normal = _cross(tip - top, pole)
+    # In the plane of the limb: a bone that passes the pole's direction must not turn over.
+    upper, lower = joint - top, tip - joint
     return (
-        aligned(middle - begin, rest_pole, joint - top, pole),
-        aligned(end - middle, rest_pole, tip - joint, pole),
+        aligned(middle - begin, rest_pole, upper, _cross(normal, upper)),
+        aligned(end - middle, rest_pole, lower, _cross(normal, lower)),
     )
+
+
+def _cross(one: Doubles, other: Doubles) -> Doubles:
+    # Plain numbers: NumPy's takes longer than all else.
+    (x, y, z), (a, b, c) = one.tolist(), other.tolist()
+    return np.array([y * c - z * b, z * a - x * c, x * b - y * a])
 
 
 def bend_leg(
