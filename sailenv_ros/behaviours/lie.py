@@ -1,4 +1,4 @@
-"""A person who lies down, gets up, and lies down elsewhere; an animal that lies on the floor."""
+"""People who lie down, get up, and lie down elsewhere; animals that lie, cats on furniture."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ kinematics. Legs depend on prints alone, so that those of a standing animal do n
 from __future__ import annotations
 
 import itertools
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ from sailenv_ros.types.instance_states import rotation_matrices
 from sailenv_ros.types.rig import Rig
 from sailenv_ros.types.rotations import between, quaternions_of
 
-__all__ = ["four_legged_posture"]
+__all__ = ["Raise", "four_legged_posture"]
 
 Doubles = NDArray[np.float64]
 
@@ -46,6 +47,9 @@ _BLADE_DEG = 30.0
 _PADS_DEG = (42.0, 40.0)
 """How far a paw hangs in the middle of a swing, in front and behind [deg]."""
 
+_HIGH = 0.19
+"""How high a paw is raised in the middle of a swing, over the height of the leg."""
+
 _SPINE = (
     ("root", -0.4, 62.0),
     ("spine01", -0.2, 60.0),
@@ -64,6 +68,18 @@ _MOST_BEND_DEG = 24.0
 _FORWARD = np.array([1.0, 0.0, 0.0])
 
 
+class Raise(NamedTuple):
+    """How far a paw is from where it stands, over the height of its leg.
+
+    Attributes
+    ----------
+    up, ahead : float
+    """
+
+    up: float = 0.0
+    ahead: float = 0.0
+
+
 def four_legged_posture(
     rig: Rig,
     moment: Moment,
@@ -74,6 +90,7 @@ def four_legged_posture(
     tail: TailHabit = DOG_TAIL,
     sits: float = 0.0,
     lies: tuple[float, Recline] | None = None,
+    raised: tuple[Raise, Raise] = (Raise(), Raise()),
 ) -> Posture:
     """Return the posture of an animal on its way, in the frame of its body there.
 
@@ -94,6 +111,8 @@ def four_legged_posture(
         How far it has sat down on its haunches, 0 to 1.
     lies : tuple of float and Recline, or None
         How far it has lain down, 0 to 1, and how it lies.
+    raised : (2,) tuple of Raise
+        The paws in front, and behind, of one in the air.
     """
     figure = animal_figure_of(rig)
     own = [own_print(moment, place) for place in moment.feet]
@@ -105,6 +124,8 @@ def four_legged_posture(
             figure, swing, own[swing], own_print(moment, moment.goal), moment.share
         )
     lain = 0.0 if lies is None else lies[0]
+    for paw in paws:
+        paw.lift(figure, raised[paw.number // 2])
     for paw in paws[2:]:
         paw.roll_deg += sits * _HOCK_DEG
         paw.knee_up = 0.6 * sits - 0.45 * lain
@@ -180,11 +201,18 @@ class _Paw:
         raised = float(np.sin(np.pi * share) ** 2)
         way = float(np.hypot(goal.x - begin.x, goal.y - begin.y)) / float(figure.legs_m[number])
         vigour = 0.35 + 0.65 * min(way, 1.0)
-        found.joint[2] += 0.19 * vigour * raised * float(figure.legs_m[number])
+        found.joint[2] += _HIGH * vigour * raised * float(figure.legs_m[number])
         fold = _ROLL_DEG[number // 2][1] * vigour * raised
         found.roll_deg = first.roll_deg + eased * (last.roll_deg - first.roll_deg) + fold
         found.hangs_deg = _PADS_DEG[number // 2] * vigour * raised * (1.0 - 0.6 * share)
         return found
+
+    def lift(self, figure: AnimalFigure, by: Raise) -> None:
+        """Raise the paw, which hangs then, and fold the leg."""
+        self.joint += float(figure.legs_m[self.number]) * np.array([by.ahead, 0.0, by.up])
+        folded = min(by.up / _HIGH, 1.0)
+        self.roll_deg += _ROLL_DEG[self.number // 2][1] * folded
+        self.hangs_deg += _PADS_DEG[self.number // 2] * folded
 
     def from_joint(self, place: Doubles) -> tuple[float, float, float]:
         """Return how far ahead of its joint, beside and above it a place is [m]."""

@@ -112,6 +112,10 @@ class Body:
             self._matrix_read, self._read = self._matrix_of(*read), read
         return self._matrix_read
 
+    def placed_pose(self) -> Pose:
+        """Return the pose with which a scene places it where it is."""
+        return self.pose()
+
     def pose(self) -> Pose:
         """Return the pose of the body frame now; what fell out of the world is at its edge."""
         if self.placement.static:
@@ -241,9 +245,8 @@ class Body:
         """
         name = self.placement.name
         if self.placement.static:
-            raise InvalidRequest(
-                f"static of {name!r}", True, "false for an object that has behaviours"
-            )
+            accepted = "false for an object that has behaviours"
+            raise InvalidRequest(f"static of {name!r}", True, accepted)
         if running.parameters.needs_joint and self.placement.joint is None:
             accepted = f"one on a joint for the behaviour {running.kind.type!r}"
             raise InvalidRequest("object", name, accepted)
@@ -304,16 +307,13 @@ class Body:
         self._client.removeBody(self._id)
 
     def _build(self) -> int:
-        placement = self.placement
-        position = self._centre_in_world(placement.pose)
-        return create_rigid_body(self._client, placement, self.mass_kg, self._centre, position)
+        centre = self._centre_in_world(self.placement.pose)
+        return create_rigid_body(self._client, self.placement, self.mass_kg, self._centre, centre)
 
     def _state(self, running: RunningBehaviour, frustum_planes: FrustumPlanes) -> BodyState:
         linear, angular = self.velocity()
-        viewer = running.parameters.viewer
-        planes = (
-            frustum_planes(viewer, running.parameters.view_distance_m) if viewer else _NO_PLANES
-        )
+        viewer, away_m = running.parameters.viewer, running.parameters.view_distance_m
+        planes = frustum_planes(viewer, away_m) if viewer else _NO_PLANES
         return BodyState(
             pose=self.pose(),
             linear_velocity=linear,

@@ -21,6 +21,7 @@ from sailenv_ros.space.outlines import Solid, solids_of
 from sailenv_ros.types.labels import ROOM_PARTS
 from sailenv_ros.world.beds import Lane, lanes_of
 from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.perches import Perch, perches_of
 from sailenv_ros.world.seats import Seat, seats_of
 
 __all__ = ["Crowd", "Disc", "Inhabitant", "body_size"]
@@ -87,6 +88,7 @@ class Crowd:
         self._maps: dict[BodySize, FreeSpace] = {}
         self._seats: tuple[Seat, ...] | None = None
         self._lanes: tuple[Lane, ...] | None = None
+        self._perches: dict[float, tuple[Perch, ...]] = {}
         self.people: dict[str, Inhabitant] = {}
         self.taken: dict[str, tuple[Place, ...]] = {}
 
@@ -150,6 +152,14 @@ class Crowd:
         if self._lanes is None:
             self._lanes = tuple(lane for body in self._bodies() for lane in lanes_of(body))
         return self._lanes
+
+    def perches(self, half_m: float) -> tuple[Perch, ...]:
+        """Return all perches for a body of half that length."""
+        self._follow()
+        if half_m not in self._perches:
+            bodies = self._bodies()
+            self._perches[half_m] = tuple(p for body in bodies for p in perches_of(body, half_m))
+        return self._perches[half_m]
 
     def body(self, name: str) -> Body | None:
         """Return the body of that name, if there is one."""
@@ -293,7 +303,8 @@ class Crowd:
             places.append(np.round(matrix[:3] / [*([0.2] * 3), _ROUNDED_M]).astype(np.int64))
         key = np.array(places).tobytes()
         if key != self._key:
-            self._key, self._maps, self._seats, self._lanes = key, {}, None, None
+            self._key, self._maps, self._perches = key, {}, {}
+            self._seats = self._lanes = None
 
 
 def body_size(height_m: float, radius: float, floor_m: float) -> BodySize:

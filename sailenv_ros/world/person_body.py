@@ -88,6 +88,10 @@ class PersonBody(Body):
         """Return the pose of the body frame now."""
         return Pose.from_matrix(self.walker.matrix)
 
+    def placed_pose(self) -> Pose:
+        """Return where it would stand on the floor if it did nothing."""
+        return self.walker.standing_pose
+
     def put(self, pose: Pose) -> None:
         """Set the pose; it stands there."""
         self.arranged = False
@@ -116,7 +120,7 @@ class PersonBody(Body):
 
     def rebuilt(self, placement: Placement) -> Body:
         """Make the person that another placement says, in the same place."""
-        new = PersonBody(self._client, replace(placement, pose=self.pose()))
+        new = PersonBody(self._client, replace(placement, pose=self.placed_pose()))
         new._behaviours, new.walker.crowd = self._behaviours, self.walker.crowd
         new.entry_pose = self.entry_pose
         new.behaviours_unchanged = self.behaviours_unchanged

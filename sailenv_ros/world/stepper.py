@@ -5,7 +5,6 @@ Knows the crowd around, and not the engine; what is done where a way ends is tol
 
 from __future__ import annotations
 
-import math
 import zlib
 from dataclasses import replace
 
@@ -28,7 +27,7 @@ from sailenv_ros.postures.gaits import gait_of
 from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
-from sailenv_ros.world.activities.base import Actor
+from sailenv_ros.world.activities.base import Actor, matrix_of
 from sailenv_ros.world.attention import Attention
 from sailenv_ros.world.crowd import Crowd, body_size
 
@@ -116,14 +115,7 @@ class Stepper:
         return self._with_swing(self._moment().scaled(1.0 / self._scale))
 
     def _matrix_of_moment(self) -> Doubles:
-        moment = self._moment()
-        c, s = math.cos(moment.yaw), math.sin(moment.yaw)
-        return np.array([
-            [c, -s, 0.0, moment.x],
-            [s, c, 0.0, moment.y],
-            [0.0, 0.0, 1.0, self._actor.floor_m],
-            [0.0, 0.0, 0.0, 1.0],
-        ])  # fmt: skip
+        return matrix_of(self._moment(), self._actor.floor_m)
 
     def _stride(self) -> Stride:
         return self._gait.stride.scaled(self._scale)

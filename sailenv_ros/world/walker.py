@@ -27,6 +27,7 @@ from sailenv_ros.world.activities.floor import (
 from sailenv_ros.world.activities.handling import ways_to_put, ways_to_take
 from sailenv_ros.world.activities.lying import lanes_for, ways_to_lie
 from sailenv_ros.world.activities.opening import ways_to_open
+from sailenv_ros.world.activities.perching import perches_for, ways_to_perch
 from sailenv_ros.world.activities.playing import Playing
 from sailenv_ros.world.activities.sitting import seats_for, ways_to_sit
 from sailenv_ros.world.crowd import Inhabitant
@@ -92,7 +93,7 @@ class Walker(Stepper):
                 self.leave()
         if self.crowd is not None:
             x, y = self._place
-            eyes_m = self._actor.floor_m + self._gait.eyes_m * self._scale
+            eyes_m = float(self.matrix[2, 3]) + self._gait.eyes_m * self._scale
             self.crowd.people[self._name] = Inhabitant(x, y, self._radius_m, eyes_m)
 
     @property
@@ -112,6 +113,12 @@ class Walker(Stepper):
         if self.held is None:
             return posture
         return with_carrying_arm(self._actor.rig, posture, self.held.grip)
+
+    @property
+    def standing_pose(self) -> Pose:
+        """Pose in which it would stand on the floor if it did nothing."""
+        does = None if self._way is not None else self._does
+        return Pose.from_matrix(self.matrix if does is None else does.standing(self.matrix))
 
     # -- what behaviours tell it (see behaviours.person.Person) --------------------------------
 
@@ -147,9 +154,13 @@ class Walker(Stepper):
 
     def lie_on(self, name: str) -> bool:
         """Begin to walk to a bed and lie down; False if it cannot."""
+        if self._on_four and name == FLOOR:
+            return self._rest(LyingOnFloor)
+        if self.crowd is None:
+            return False
         if self._on_four:
-            return name == FLOOR and self._rest(LyingOnFloor)
-        return self.crowd is not None and self._go_and(ways_to_lie(self._actor, self.crowd, name))
+            return self._go_and(ways_to_perch(self._actor, self.crowd, self._size, name))
+        return self._go_and(ways_to_lie(self._actor, self.crowd, name))
 
     def play(self, play: ClipPlay) -> bool:
         """Begin to walk to where a clip is played, and play it; False if it cannot."""
@@ -202,7 +213,8 @@ class Walker(Stepper):
         if self.crowd is None:
             return ()
         if self._on_four:
-            return (FLOOR,)
+            perches = perches_for(self._actor, self.crowd, self._size)
+            return (FLOOR, *dict.fromkeys(perch.name for perch in perches))
         lanes = lanes_for(self._actor, self.crowd)
         return tuple(dict.fromkeys(lane.name for lane, _ in lanes))
 

@@ -84,13 +84,15 @@ def _object(body: Body, begun: Mapping[str, Body], *, unchanged: bool) -> Entry:
     if not unchanged:
         for key in (*PLACE_KEYS, *VELOCITY_KEYS):
             entry.pop(key, None)
-        entry.update(pose_entry(body.pose()))
+        entry.update(pose_entry(body.placed_pose()))
         entry.update(_velocities(body))
     elif placement.entry.wall is None and not _as_put(body, begun):
         on = placement.entry.on
         for key in PLACE_KEYS:
             entry.pop(key, None)
-        entry.update(pose_entry(body.pose()) if on is None else settled_place(body, begun[on]))
+        entry.update(
+            pose_entry(body.placed_pose()) if on is None else settled_place(body, begun[on])
+        )
     elif "orientation" in entry:
         del entry["orientation"]
         entry.update(pose_entry(placement.entry.pose))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zlib
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.types.model import Asset
 from sailenv_ros.types.rig import Rig
 
-__all__ = ["Actor", "Held", "Instant", "Place", "SpotActivity"]
+__all__ = ["Actor", "Held", "Instant", "Place", "SpotActivity", "matrix_of"]
 
 Doubles = NDArray[np.float64]
 Place = tuple[float, float]
@@ -160,6 +161,10 @@ class SpotActivity(ABC):
         """Return the pose of the body now, by the one in which it began."""
         return begin
 
+    def standing(self, now: Doubles) -> Doubles:
+        """Return the pose in which the body would stand on its floor, by the one now."""
+        return now
+
     def held(self, before: Held | None) -> Held | None:
         """Return what is in the hand now, by what was in it when it began."""
         return before
@@ -167,3 +172,14 @@ class SpotActivity(ABC):
     @abstractmethod
     def posture(self, now: Instant) -> Posture:
         """Return the posture, in the frame of the body where its feet stand."""
+
+
+def matrix_of(moment: Moment, floor_m: float) -> Doubles:
+    """Return (4, 4): world from a body whose feet are on a floor of some height [m]."""
+    c, s = math.cos(moment.yaw), math.sin(moment.yaw)
+    return np.array([
+        [c, -s, 0.0, moment.x],
+        [s, c, 0.0, moment.y],
+        [0.0, 0.0, 1.0, floor_m],
+        [0.0, 0.0, 0.0, 1.0],
+    ])  # fmt: skip

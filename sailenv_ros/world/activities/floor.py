@@ -108,22 +108,28 @@ class SittingOnFloor(RestingOnFloor):
 
 
 class LyingOnFloor(RestingOnFloor):
-    """An animal upon its belly; parameters as `RestingOnFloor`."""
+    """An animal upon its belly; parameters as `RestingOnFloor`.
+
+    Attributes
+    ----------
+    recline : Recline
+        How it lies.
+    """
 
     _DOWN_S, _WORDS, _order = 1.5, ("lying down", "lying"), (2, 0, 3, 1)
 
     def __init__(self, actor: Actor, place: Place) -> None:
         super().__init__(actor, place)
-        self._recline = _recline_of(actor, self._rig)
+        self.recline = _recline_of(actor, self._rig)
 
     def posture(self, now: Instant) -> Posture:
         """Return the posture, in the frame of the body."""
-        lies = self._share, self._recline
+        lies = self._share, self.recline
         return self._posture(now.moment, now.time_s, seed=now.seed, look=now.look, lies=lies)
 
     def _print(self, feet: tuple[FootPrint, ...], number: int) -> FootPrint:
         place = feet[number]
-        ahead = self._actor.scale * self._recline.ahead_m[number // 2]
+        ahead = self._actor.scale * self.recline.ahead_m[number // 2]
         c, s = float(np.cos(place.yaw)), float(np.sin(place.yaw))
         return FootPrint(place.x + ahead * c, place.y + ahead * s, place.yaw)
 
