@@ -128,7 +128,7 @@ def four_legged_posture(
         paw.lift(figure, raised[paw.number // 2])
     for paw in paws[2:]:
         paw.roll_deg += sits * _HOCK_DEG
-        paw.knee_up = 0.6 * sits - 0.45 * lain
+        paw.knee_up = 0.6 * sits + 0.1 * lain
     root, turns = _trunk(rig, figure, paws, moment, sits)
     if lies is not None and lain:
         root, turns = _lain(rig, figure, paws, root, turns, lain, lies[1])
@@ -292,7 +292,7 @@ def _lain(
     for paw in paws:
         rolls = (WRIST_DEG, HOCK_DEG)[paw.number // 2]
         paw.roll_deg += share * (rolls - paw.roll_deg)
-        paw.aside = (0.5, 1.3)[paw.number // 2] * share * (1.0 if paw.side == "L" else -1.0)
+        paw.aside = (0.5, 0.5)[paw.number // 2] * share * (1.0 if paw.side == "L" else -1.0)
     begin = quaternions_of(np.array(list(turns.values())))
     end = np.broadcast_to(quaternions_of(level[None]), begin.shape)
     turned = rotation_matrices(between(begin, end, share))

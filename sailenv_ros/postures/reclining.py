@@ -29,7 +29,7 @@ _HIP = 0.30
 _ELBOW, _WRIST = 0.12, 0.10
 """Heights of the joints of the legs in front, over that of the shoulders at rest."""
 
-_FOLD = 0.32
+_FOLD = 0.02
 """How far the hocks are ahead of the hips, over the height of the hips at rest."""
 
 
