@@ -239,8 +239,8 @@ class Crowd:
         return chosen
 
     def bodies(self, without: str = "") -> list[Body]:
-        """Return the bodies that are no people, but one."""
-        return [body for body in self._bodies() if body.placement.name != without]
+        """Return what is in the way of things and is no person, but one body."""
+        return [b for b in self._bodies() if b.collides and b.placement.name != without]
 
     def is_clear(self, size: BodySize, places: Doubles) -> bool:
         """Return whether a body has room at (N, 2) places [m]."""

@@ -7,10 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.types.labels import ROOM_PARTS
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.height_fields import height_field_of
 
-__all__ = ["away_from", "free_spots"]
+__all__ = ["free_spots", "is_empty"]
 
 Doubles = NDArray[np.float64]
 
@@ -57,7 +58,7 @@ def free_spots(body: Body, others: Iterable[Body], around_m: float) -> list[Doub
     spots = spots[(spots[:, 2] > _LOWEST_M) & (spots[:, 2] < _HIGHEST_M)]
     for other in others:
         if other is not body and len(spots):
-            spots = spots[away_from(other, spots, around_m + _APART_M)]
+            spots = spots[_away_from(other, spots, around_m + _APART_M)]
     edge = np.abs((spots[:, :2] - matrix[:2, 3]) @ matrix[:2, :2])
     order = np.argsort(-np.max(edge / np.maximum(0.5 * (high - low)[:2], 1e-6), axis=1))
     chosen: list[Doubles] = []
@@ -69,7 +70,16 @@ def free_spots(body: Body, others: Iterable[Body], around_m: float) -> list[Doub
     return chosen
 
 
-def away_from(other: Body, spots: Doubles, around_m: float) -> NDArray[np.bool_]:
+def is_empty(spots: Doubles, others: Iterable[Body], around_m: float) -> bool:
+    """Return whether nothing but the room is at (N, 3) spots, nor nearer than a distance [m]."""
+    return all(
+        bool(_away_from(other, spots, around_m).all())
+        for other in others
+        if other.placement.asset.category not in ROOM_PARTS
+    )
+
+
+def _away_from(other: Body, spots: Doubles, around_m: float) -> NDArray[np.bool_]:
     """Return (N,): which of (N, 3) spots a body is not upon, nor nearer to than a distance [m]."""
     bounds = other.placement.asset.model.bounds() * np.asarray(other.placement.scale)
     matrix = other.world_from_body()

@@ -20,7 +20,6 @@ from sailenv_ros.postures.footsteps import Moment
 from sailenv_ros.postures.lying import SINK_M, Ground, depths, lying_posture, tucked_posture
 from sailenv_ros.postures.skeleton import Posture, turn_about
 from sailenv_ros.postures.standing import breathing
-from sailenv_ros.types.labels import ROOM_PARTS
 from sailenv_ros.types.rig import Rig
 from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity
 from sailenv_ros.world.activities.sitting import HIGHEST, Sitting
@@ -28,7 +27,7 @@ from sailenv_ros.world.beds import Lane
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.seats import Seat
 from sailenv_ros.world.skin import contact_skin
-from sailenv_ros.world.surfaces import away_from
+from sailenv_ros.world.surfaces import is_empty
 
 __all__ = ["LIE_S", "Lying", "lanes_for", "ways_to_lie"]
 
@@ -212,11 +211,7 @@ def _is_empty(lane: Lane, crowd: Crowd) -> bool:
     way = np.arange(0.1, lane.length_m, _SPACING_M)
     places = lane.head - way[:, None] * lane.way
     spots = np.column_stack([places, lane.field.at(places)])
-    return all(
-        bool(away_from(other, spots, _BESIDE_LANE_M).all())
-        for other in crowd.bodies(without=lane.name)
-        if other.placement.asset.category not in ROOM_PARTS
-    )
+    return is_empty(spots, crowd.bodies(without=lane.name), _BESIDE_LANE_M)
 
 
 def ways_to_lie(actor: Actor, crowd: Crowd, name: str) -> list[Lying]:

@@ -27,12 +27,11 @@ from sailenv_ros.postures.leaping import Leap, leap_over_edge, leaping_posture
 from sailenv_ros.postures.reclining import Recline
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.space.free_space import BodySize
-from sailenv_ros.types.labels import ROOM_PARTS
 from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity, matrix_of
 from sailenv_ros.world.activities.floor import LyingOnFloor
 from sailenv_ros.world.crowd import Crowd
 from sailenv_ros.world.perches import Perch
-from sailenv_ros.world.surfaces import away_from
+from sailenv_ros.world.surfaces import is_empty
 
 __all__ = ["Perching", "perches_for", "ways_to_perch"]
 
@@ -308,11 +307,7 @@ def _is_empty(perch: Perch, crowd: Crowd, size: BodySize) -> bool:
     """Return whether nothing lies on a perch, nor between it and the edge."""
     edge = np.array(perch.place) + perch.edge_m * np.array([*perch.out, 0.0])
     spots = np.array([perch.place, edge])
-    return all(
-        bool(away_from(other, spots, size.radius_m).all())
-        for other in crowd.bodies(without=perch.name)
-        if other.placement.asset.category not in ROOM_PARTS
-    )
+    return is_empty(spots, crowd.bodies(without=perch.name), size.radius_m)
 
 
 def ways_to_perch(actor: Actor, crowd: Crowd, size: BodySize, name: str) -> list[Perching]:

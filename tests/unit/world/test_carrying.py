@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -188,6 +190,20 @@ def test_spots_are_free_of_what_stands_there() -> None:
         assert spot[2] == pytest.approx(0.7, abs=1e-6)
         assert abs(spot[0]) < 0.35 - 0.05
         assert np.hypot(spot[0] - 0.25, spot[1]) > 0.035 + 0.05
+    world.close()
+
+
+def test_an_outside_all_around_is_not_in_the_way() -> None:
+    outside = replace(box("outside", (9.0, 9.0, 4.0), "outside"), collision=())
+    world, anna = room(
+        thing(0.2, 0.2, 0.7),
+        placed("outside", outside, 0.0, 0.0, static=True),
+        placed("bed", furniture("bed", "bed", [((2.0, 0.9, 0.45), (0, 0, 0))]), -2.0, 0.0),
+    )
+    assert anna.walker.beds() == ("bed",)
+    assert anna.walker.take("thing")
+    until_standing(world, anna)
+    assert anna.walker.put_on("far")
     world.close()
 
 
