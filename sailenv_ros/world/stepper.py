@@ -29,7 +29,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Actor, matrix_of
 from sailenv_ros.world.attention import Attention
-from sailenv_ros.world.crowd import Crowd, body_size
+from sailenv_ros.world.crowd import Crowd, Disc, body_size
 
 __all__ = ["Place", "Stepper", "yaw_of"]
 
@@ -38,6 +38,10 @@ Place = tuple[float, float]
 
 _BLOCKED_S = 1.2
 """Time for which one waits for another who is in the way [s]."""
+
+
+_ROUND_M = 0.05
+"""Added to the radius of another whom one goes round: steps cut corners [m]."""
 
 
 class Stepper:
@@ -120,12 +124,19 @@ class Stepper:
     def _stride(self) -> Stride:
         return self._gait.stride.scaled(self._scale)
 
-    def _go(self, place: Place, yaw: float | None) -> bool:
+    def _go(self, place: Place, yaw: float | None, *, round_others: bool) -> bool:
+        """Begin to go to a place; round where others are now, or as if they went away."""
         if self.crowd is None:
             return False
-        corners = self.crowd.way(self._size, self._place, place)
+        others = self._others() if round_others else ()
+        corners = self.crowd.way(self._size, self._place, place, others)
         self._goal = (place, yaw)
         return self._follow(corners, yaw)
+
+    def _others(self) -> list[Disc]:
+        """Return what others take, and what one who goes round them keeps free."""
+        assert self.crowd is not None
+        return [(x, y, radius + _ROUND_M) for x, y, radius in self.crowd.discs(self._name)]
 
     def _follow(self, corners: list[Place] | None, yaw: float | None) -> bool:
         """Begin to go along corners; turn to them first, and at the end."""
@@ -183,11 +194,7 @@ class Stepper:
         assert self.crowd is not None
         self._feet = way.feet_after(number)
         self._way, self._waited_s = None, 0.0
-        discs = self.crowd.discs(self._name)
-        corners, goal = None, self._goal
-        if goal is not None:
-            corners = self.crowd.way(self._size, self._place, goal[0], discs)
-        if corners is not None and goal is not None and self._follow(corners, goal[1]):
+        if self._goal is not None and self._go(*self._goal, round_others=True):
             return
         self.problem = "someone stands in the way"
         self._stopped()

@@ -6,7 +6,7 @@ way ends is an activity of `world.activities`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -137,14 +137,16 @@ class Walker(Stepper):
 
     def walk_to(self, place: Place) -> bool:
         """Begin to walk to a place [m]; False, and nothing begins, if no way leads there."""
-        return self._begins(place, None)
+        return any(self._begins(place, None, round_others=do) for do in (True, False))
 
     def walk_near(self, name: str) -> bool:
         """Begin to walk to where it stands before an object and faces it; False if it cannot."""
         if self.crowd is None:
             return False
         before = self.crowd.before(name, _STAND_OFF_M + self._radius_m)
-        return before is not None and self._begins(*before)
+        if before is None:
+            return False
+        return any(self._begins(*before, round_others=do) for do in (True, False))
 
     def sit_on(self, name: str) -> bool:
         """Begin to walk to a seat and sit down; False if it cannot."""
@@ -228,9 +230,9 @@ class Walker(Stepper):
 
     # -- inside ----------------------------------------------------------------------------
 
-    def _begins(self, place: Place, yaw: float | None) -> bool:
+    def _begins(self, place: Place, yaw: float | None, *, round_others: bool) -> bool:
         """Begin to walk to a place; False if no way leads there, or something is being done."""
-        return self._does is None and self._go(place, yaw)
+        return self._does is None and self._go(place, yaw, round_others=round_others)
 
     @property
     def _on_four(self) -> bool:
@@ -251,8 +253,8 @@ class Walker(Stepper):
         """Begin to go where something is done, by the first way to do it that can be reached."""
         if self.crowd is None or self._does is not None or self._way is not None:
             return False
-        for activity in ways:
-            if self._begins(activity.feet, activity.yaw):
+        for activity, round_others in _attempts(ways):
+            if self._begins(activity.feet, activity.yaw, round_others=round_others):
                 self._does = activity
                 self.crowd.taken[self._name] = activity.takes
                 if activity.piece:
@@ -275,3 +277,12 @@ class Walker(Stepper):
         if self.held is not None:
             self.pass_through(self.held.name, False)
         self.held = None
+
+
+def _attempts(ways: Iterable[SpotActivity]) -> Iterator[tuple[SpotActivity, bool]]:
+    """Yield each way with True, to go round others to it; then each with False."""
+    tried = []
+    for way in ways:
+        tried.append(way)
+        yield way, True
+    yield from ((way, False) for way in tried)

@@ -21,7 +21,7 @@ from sailenv_ros.postures.lying import SINK_M, Ground, depths, lying_posture, tu
 from sailenv_ros.postures.skeleton import Posture, turn_about
 from sailenv_ros.postures.standing import breathing
 from sailenv_ros.types.rig import Rig
-from sailenv_ros.world.activities.base import Actor, Instant, SpotActivity
+from sailenv_ros.world.activities.base import Actor, Instant, Place, SpotActivity
 from sailenv_ros.world.activities.sitting import HIGHEST, Sitting
 from sailenv_ros.world.beds import Lane
 from sailenv_ros.world.crowd import Crowd
@@ -92,10 +92,7 @@ class Lying(SpotActivity):
         self._hips = lane.head - hips_m * lane.way
         self._sitting = Sitting(actor, seat, lane.field.at)
         self.feet, self.yaw, self.piece = self._sitting.feet, self._sitting.yaw, lane.name
-        self.takes = tuple(
-            (float(x), float(y))
-            for x, y in (self._hips + away * lane.way for away in (-0.6, 0.0, 0.6))
-        )
+        self.takes = _taken(lane, hips_m)
         self._done_s = 0.0
         self._rises = False
         self._plan: _Plan | None = None
@@ -199,11 +196,19 @@ def lanes_for(actor: Actor, crowd: Crowd) -> list[tuple[Lane, float]]:
         to_neck = max(lane.pillow_m + _NECK_M, tall - neck + 0.02)
         feet = _OVER_M if lane.open_end else -_TOES * actor.scale * figure.height_m
         to_neck = min(to_neck, lane.length_m + feet - neck)
-        place = lane.head - (to_neck + neck - hips) * lane.way
-        free = crowd.is_free(actor.name, (float(place[0]), float(place[1])))
+        places = _taken(lane, to_neck + neck - hips)
+        free = all(crowd.is_free(actor.name, place) for place in places)
         if to_neck >= tall - neck - 0.02 and free and _is_empty(lane, crowd):
             found.append((lane, to_neck + neck - hips))
     return found
+
+
+def _taken(lane: Lane, hips_m: float) -> tuple[Place, ...]:
+    """Return the places of head, hips and feet of one who lies with the hips there."""
+    return tuple(
+        (float(x), float(y))
+        for x, y in (lane.head + (away - hips_m) * lane.way for away in (-0.6, 0.0, 0.6))
+    )
 
 
 def _is_empty(lane: Lane, crowd: Crowd) -> bool:

@@ -13,6 +13,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.placement import Placement
 from sailenv_ros.world.skin import contact_skin
+from tests.support.blocks import furniture
 from tests.support.peopled_worlds import (
     CATEGORIES,
     STICK,
@@ -232,4 +233,28 @@ def test_one_who_is_stout_sits_higher_and_not_in_the_seat() -> None:
     skin = contact_skin(asset).places(ben.walker.posture) @ matrix[:3, :3].T + matrix[:3, 3]
     over = (np.abs(skin[:, 0]) < 0.2) & (np.abs(skin[:, 1]) < 0.6) & (skin[:, 2] > 0.2)
     assert 0.425 < float(skin[over, 2].min()) < 0.45  # it presses in by 2 cm
+    world.close()
+
+
+def test_one_who_cannot_pass_another_takes_the_seat_on_this_side() -> None:
+    sofa = furniture(
+        "sofa", "couch", [((0.9, 2.0, 0.45), (0, 0, 0)), ((0.2, 2.0, 0.9), (-0.35, 0, 0))]
+    )
+    world = world_of(
+        person("anna", 0.87, 0.85),
+        person("ben", 0.87, -0.2),
+        placed("sofa", sofa, 0.0, 0.0, static=True),
+        placed("wall", box("w", (0.1, 4.0, 1.0), "wall"), 1.34, 0.0, static=True),
+        placed("end", box("e", (1.8, 0.1, 1.0), "wall"), 0.5, 1.4, static=True),
+    )
+    anna = one(world, "anna")
+    world.step(1)
+    assert [seat.y for seat in anna.walker.crowd.seats()] == [-0.5, 0.5]
+    assert anna.walker.sit_on("sofa")
+    for _ in range(200):
+        world.step(12)
+        if anna.walker.activity == "seated":
+            break
+    assert anna.walker.activity == "seated"
+    assert anna.pose().position_m[1] > 0.0
     world.close()

@@ -154,6 +154,16 @@ def test_a_place_that_is_taken_is_not_free() -> None:
     world.close()
 
 
+def test_nobody_lies_down_upon_a_cat() -> None:
+    bed = furniture("bed", "bed", [((2.0, 0.9, 0.45), (0.0, 0.0, 0.0))])
+    world = with_cat(person("anna", 1.6, -0.9), piece=bed)
+    tom, anna = one(world, "tom"), one(world, "anna")
+    assert anna.walker.beds() == ("sofa",)
+    assert tom.walker.lie_on("sofa")
+    assert anna.walker.beds() == ()
+    world.close()
+
+
 def test_nobody_sits_down_upon_a_cat() -> None:
     world = with_cat(person("anna", 1.6, -0.9), piece=sofa(width=0.9))
     tom, anna = one(world, "tom"), one(world, "anna")
