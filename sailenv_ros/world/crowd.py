@@ -7,15 +7,13 @@ around has moved by more than a hand's breadth since the last one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.postures.footsteps import Way
-from sailenv_ros.space.free_space import FREE, OCCUPIED, BodySize, FreeSpace
+from sailenv_ros.space.free_space import FREE, BodySize, FreeSpace
 from sailenv_ros.space.grid import map_free_space
 from sailenv_ros.space.outlines import Solid, solids_of
 from sailenv_ros.types.labels import ROOM_PARTS
@@ -23,14 +21,11 @@ from sailenv_ros.world.beds import Lane, lanes_of
 from sailenv_ros.world.bodies import Body
 from sailenv_ros.world.perches import Perch, perches_of
 from sailenv_ros.world.seats import Seat, seats_of
+from sailenv_ros.world.ways import Disc, Place, nearest_cell, way_between
 
 __all__ = ["Crowd", "Disc", "Inhabitant", "body_size"]
 
 Doubles = NDArray[np.float64]
-Place = tuple[float, float]
-
-Disc = tuple[float, float, float]
-"""A place that someone takes: x, y and a radius [m]."""
 
 
 class Inhabitant(NamedTuple):
@@ -56,11 +51,12 @@ _MOVER_EYES_M = 0.8
 """Height at which one looks at a mover [m]."""
 
 _ROUNDED_M = 0.05
-_NEAR_M = 0.9
-"""How far from a free place one may stand or want to go [m]."""
-
 _APART_M = 0.5
 """Distance of places that two can use [m]."""
+
+_NEARER_M = 0.04
+"""By which one comes nearer to another whom one would walk into, and not by turning on the spot
+beside it [m]."""
 
 _BESIDE_M = 0.02
 """Added to the radius of a body: between the middles of two free cells a way comes so much nearer
@@ -118,7 +114,7 @@ class Crowd:
             for x, y, radius in self.discs(name):
                 now = np.hypot(x - here.x, y - here.y)
                 then = np.hypot(x - there.x, y - there.y)
-                if then < radius + radius_m and then < now:
+                if then < radius + radius_m and then < now - _NEARER_M:
                     return True
         return False
 
@@ -202,7 +198,7 @@ class Crowd:
     def random_place(self, size: BodySize, start: Place, rng: np.random.Generator) -> Place | None:
         """Return a free place that can be reached; None if there is none."""
         space = self.free_space(size)
-        cell = self._nearest(space, start)
+        cell = nearest_cell(space, start)
         if cell is None:
             return None
         region = space.regions == space.regions[cell]
@@ -217,7 +213,7 @@ class Crowd:
         """Return free places that a person can reach near a place, the nearest first [m]."""
         space = self.free_space(size)
         own = self.people.get(name)
-        start = self._nearest(space, place if own is None else (own.x, own.y))
+        start = nearest_cell(space, place if own is None else (own.x, own.y))
         if start is None:
             return []
         rows, columns = np.nonzero(space.regions == space.regions[start])
@@ -253,47 +249,12 @@ class Crowd:
     ) -> list[Place] | None:
         """Return the corners of a way between two places, or None.
 
-        Places beside free space are joined to it by a straight line.
+        See `ways.way_between`.
         """
-        space = self.free_space(size)
-        for x, y, radius in around:
-            space = _without(space, x, y, radius + size.radius_m)
-        first, last = self._nearest(space, start), self._nearest(space, goal)
-        if first is None or last is None:
-            return None
-        begin, end = (space.position_of(*cell)[:2] for cell in (first, last))
-        try:
-            corners = space.path(
-                start if space.cell_of(start) == first else begin,
-                goal if space.cell_of(goal) == last else end,
-            )
-        except InvalidRequest:
-            return None
-        found = [(float(x), float(y)) for x, y, _ in corners]
-        if space.cell_of(start) != first:
-            found.insert(0, start)
-        if space.cell_of(goal) != last:
-            found.append(goal)
-        return found
+        grown = [(x, y, radius + size.radius_m) for x, y, radius in around]
+        return way_between(self.free_space(size), start, goal, grown)
 
     # -- inside ----------------------------------------------------------------------------
-
-    def _nearest(self, space: FreeSpace, place: Place) -> tuple[int, int] | None:
-        """Return the free cell that is nearest to a place, if one is near."""
-        cell = space.cell_of(place)
-        if cell is not None and space.cells[cell] == FREE:
-            return cell
-        rows, columns = np.nonzero(space.cells == FREE)
-        if not len(rows):
-            return None
-        side = space.resolution_m
-        x = space.origin_m[0] + (columns + 0.5) * side - place[0]
-        y = space.origin_m[1] + (rows + 0.5) * side - place[1]
-        away = x * x + y * y
-        number = int(away.argmin())
-        if away[number] > _NEAR_M**2:
-            return None
-        return int(rows[number]), int(columns[number])
 
     def _follow(self) -> None:
         """Forget what is known if things have moved."""
@@ -330,15 +291,3 @@ def _place_in(body: Body, share: float) -> Doubles:
 def _solids(body: Body) -> Iterable[Solid]:
     placement = body.placement
     return solids_of(placement.asset.collision, placement.scale, body.world_from_body())
-
-
-def _without(space: FreeSpace, x: float, y: float, radius_m: float) -> FreeSpace:
-    """Return a map in which a disc is taken."""
-    side = space.resolution_m
-    height, width = space.cells.shape
-    columns = space.origin_m[0] + (np.arange(width) + 0.5) * side - x
-    rows = space.origin_m[1] + (np.arange(height) + 0.5) * side - y
-    near = rows[:, None] ** 2 + columns[None] ** 2 < radius_m**2
-    cells = np.where(near & (space.cells == FREE), OCCUPIED, space.cells).astype(np.int8)
-    cells.flags.writeable = False
-    return replace(space, cells=cells)

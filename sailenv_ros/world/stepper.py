@@ -159,7 +159,7 @@ class Stepper:
         assert way is not None
         number, later = (int(t / way.step_s + 1e-9) for t in (self._way_s, self._way_s + STEP_S))
         if later > number or self._way_s == 0.0:
-            if self.crowd is not None and self.crowd.blocks(self._name, self._radius_m, way, later):
+            if self._is_blocked(way, later):
                 self._wait(way, later)
                 return
             self._waited_s = 0.0
@@ -169,6 +169,12 @@ class Stepper:
             self._feet = way.feet_after(len(way.prints))
             self._way = None
         self.matrix = self._matrix_of_moment()
+
+    def _is_blocked(self, way: Way, number: int) -> bool:
+        """Return whether another is in the way; nobody is of steps on the spot."""
+        if self.crowd is None or self._goal is None:
+            return False
+        return self.crowd.blocks(self._name, self._radius_m, way, number)
 
     def _swing_at(self, moment: Moment) -> float:
         """Return the share of their swing that arms, or a tail, have room for."""

@@ -258,3 +258,30 @@ def test_one_who_cannot_pass_another_takes_the_seat_on_this_side() -> None:
     assert anna.walker.activity == "seated"
     assert anna.pose().position_m[1] > 0.0
     world.close()
+
+
+def test_one_who_gives_up_stands_even_beside_others() -> None:
+    """Ben and Cleo are nearer than people go by: what Anna may do is to stand, and to walk away."""
+    walls = [
+        placed(f"wall {n}", box(f"w{n}", (3.0, 0.1, 1.0), "wall"), 0.5, y, static=True)
+        for n, y in enumerate((-0.45, 0.45))
+    ]
+    world = world_of(
+        person("anna", 0.0, 0.0),
+        person("ben", 0.5, 0.0),
+        person("cleo", 1.0, 0.0),
+        placed("end", box("e", (0.1, 1.0, 1.0), "wall"), 2.05, 0.0, static=True),
+        *walls,
+    )
+    anna = one(world, "anna")
+    world.step(1)
+    assert anna.walker.walk_to((1.7, 0.0))
+    for _ in range(60):
+        world.step(12)
+    assert anna.walker.activity == "standing"
+    assert anna.walker.problem == "someone stands in the way"
+    assert anna.walker.walk_to((-1.4, 0.0))
+    for _ in range(120):
+        world.step(12)
+    assert anna.pose().position_m[0] == pytest.approx(-1.4, abs=0.05)
+    world.close()
