@@ -19,6 +19,7 @@ Shares = dict[str, float]
 _AGES = ("baby", "child", "young", "old")
 _AGE_YEARS = (1.0, 12.0, 25.0, 90.0)
 _LEAST_SHARE = 1e-6
+_HALVINGS = 24
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +32,9 @@ class Build:
         0 to 1.
     age_years : float
         1 to 90.
-    muscle, weight, height, proportions : float
+    stature_m : float
+        From the soles to the top of the head [m].
+    muscle, weight, proportions : float
         0 to 1; 0.5 is the average of that age.
     african, asian, caucasian : float
         Shares of the three shapes of faces and bodies that the data has.
@@ -39,10 +42,10 @@ class Build:
 
     female: float
     age_years: float
+    stature_m: float
     muscle: float = 0.5
     weight: float = 0.5
-    height: float = 0.5
-    proportions: float = 0.7
+    proportions: float = 0.2
     african: float = 1.0
     asian: float = 1.0
     caucasian: float = 1.0
@@ -50,20 +53,45 @@ class Build:
 
 def figure(data: BodyData, build: Build) -> Doubles:
     """Return the (V, 3) vertices of a body and its helpers [m]; the soles are at z = 0."""
-    vertices = data.base.copy()
+    short = data.base.copy()
     for name, share in _targets(build):
         if share > _LEAST_SHARE:
-            vertices += share * data.target(name)
+            short += share * data.target(name)
+    taller = np.zeros_like(short)
+    for name, share in _height_targets(build):
+        if abs(share) > _LEAST_SHARE:
+            taller += share * data.target(name)
+    least, most = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (least + most)
+        column = short[:BODY_VERTICES, 2] + middle * taller[:BODY_VERTICES, 2]
+        least, most = (middle, most) if np.ptp(column) < build.stature_m else (least, middle)
+    vertices = short + 0.5 * (least + most) * taller
     vertices[:, 2] -= vertices[:BODY_VERTICES, 2].min()
     return vertices
 
 
-def _targets(build: Build) -> Iterator[tuple[str, float]]:
-    genders = {"male": 1.0 - build.female, "female": build.female}
-    ages = _between(build.age_years, _AGE_YEARS, _AGES)
+def _height_targets(build: Build) -> Iterator[tuple[str, float]]:
+    """Yield what takes the smallest body of an age to the tallest one."""
+    for kind, share in _kinds(build):
+        yield f"macrodetails/height/{kind}-maxheight", share
+        yield f"macrodetails/height/{kind}-minheight", -share
+
+
+def _kinds(build: Build) -> Iterator[tuple[str, float]]:
     muscles = _between(build.muscle, (0.0, 0.5, 1.0), ("minmuscle", "averagemuscle", "maxmuscle"))
     weights = _between(build.weight, (0.0, 0.5, 1.0), ("minweight", "averageweight", "maxweight"))
-    heights = {"minheight": 1.0 - build.height, "maxheight": build.height}
+    genders = {"male": 1.0 - build.female, "female": build.female}
+    ages = _between(build.age_years, _AGE_YEARS, _AGES)
+    for gender, age, muscle, weight in product(genders, ages, muscles, weights):
+        share = genders[gender] * ages[age] * muscles[muscle] * weights[weight]
+        yield f"{gender}-{age}-{muscle}-{weight}", share
+
+
+def _targets(build: Build) -> Iterator[tuple[str, float]]:
+    """Yield the targets of the smallest body, and their shares."""
+    genders = {"male": 1.0 - build.female, "female": build.female}
+    ages = _between(build.age_years, _AGE_YEARS, _AGES)
     whole = build.african + build.asian + build.caucasian
     races = {
         "african": build.african / whole,
@@ -73,13 +101,10 @@ def _targets(build: Build) -> Iterator[tuple[str, float]]:
     for race, gender, age in product(races, genders, ages):
         share = races[race] * genders[gender] * ages[age]
         yield f"macrodetails/{race}-{gender}-{age}", share
-    for gender, age, muscle, weight in product(genders, ages, muscles, weights):
-        share = genders[gender] * ages[age] * muscles[muscle] * weights[weight]
-        kind = f"{gender}-{age}-{muscle}-{weight}"
+    for kind, share in _kinds(build):
         yield f"macrodetails/universal-{kind}", share
-        for height, part in heights.items():
-            yield f"macrodetails/height/{kind}-{height}", share * part
-        if age != "baby":
+        yield f"macrodetails/height/{kind}-minheight", share
+        if "-baby-" not in kind:
             ideal = share * build.proportions
             yield f"macrodetails/proportions/{kind}-idealproportions", ideal
 

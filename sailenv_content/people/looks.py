@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from sailenv_content.people.figures import Build
 from sailenv_content.people.garments import GARMENTS
+from sailenv_content.people.growth import stature_m
 from sailenv_content.people.hair import HAIRSTYLES
 from sailenv_ros.system.resources import resource_path
 from sailenv_ros.system.yaml_text import from_yaml
@@ -19,10 +20,6 @@ __all__ = ["PersonLook", "Wear", "people"]
 
 Colour = Annotated[str, Field(pattern=r"^#[0-9a-f]{6}$")]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
-
-
-_HEIGHT = 0.75
-"""The data's 0.5 is taller than people are on the average."""
 
 
 class _Look(BaseModel):
@@ -66,9 +63,9 @@ class PersonLook(_Look):
         return Build(
             female=self.female,
             age_years=self.age,
+            stature_m=stature_m(self.age, self.female, self.height),
             muscle=self.muscle,
             weight=self.weight,
-            height=_HEIGHT * self.height,
             african=african,
             asian=asian,
             caucasian=caucasian,

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from sailenv_content.people.fetch_bodies import body_data, fetch_bodies
 from sailenv_content.people.figures import Build, figure
+from sailenv_content.people.growth import stature_m
 from sailenv_content.people.looks import people
 from sailenv_content.people.makehuman import BODY_VERTICES, BodyData
 from sailenv_content.people.making import make_person
@@ -54,13 +55,23 @@ def test_people_are_those_that_chance_may_choose() -> None:
     assert len(people()) >= 24
 
 
-def test_bodies_are_as_tall_as_people_are(data: BodyData) -> None:
-    heights = {}
-    for years in (4, 9, 30):
-        body = figure(data, Build(female=1.0, age_years=years, height=0.375))[:BODY_VERTICES]
-        assert body[:, 2].min() == pytest.approx(0.0)
-        heights[years] = float(body[:, 2].max())
-    assert 0.75 < heights[4] < heights[9] < 1.45 < heights[30] < 1.85
+@pytest.mark.parametrize(
+    ("years", "female", "tall_m"),
+    [(4, 0.0, 1.025), (9, 1.0, 1.33), (30, 1.0, 1.632), (20, 0, 1.768)],
+)
+def test_bodies_are_as_tall_as_people_are(
+    data: BodyData, years: float, female: float, tall_m: float
+) -> None:
+    assert stature_m(years, female) == pytest.approx(tall_m, abs=0.001)
+    build = Build(female=female, age_years=years, stature_m=tall_m)
+    body = figure(data, build)[:BODY_VERTICES]
+    assert body[:, 2].min() == pytest.approx(0.0)
+    assert body[:, 2].max() == pytest.approx(tall_m, abs=1e-5)
+
+
+def test_two_of_a_hundred_are_taller_than_two_standard_deviations() -> None:
+    assert stature_m(20, 0.0, 1.0) == pytest.approx(1.768 * 1.08)
+    assert stature_m(20, 0.0, 0.0) == pytest.approx(1.768 * 0.92)
 
 
 def test_a_person_is_the_same_bytes_and_wears_what_is_said(data: BodyData) -> None:
