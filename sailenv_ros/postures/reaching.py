@@ -30,6 +30,11 @@ _LEAN_DEG = (24.0, 50.0, 68.0)
 """Of pelvis, belly and chest when one bends down as far as one can [deg]."""
 
 
+_LOW, _SQUAT = 0.5, 0.38
+"""Height over that of the hips below which one squats, and how much deeper for what is on the
+floor, over the length of the legs."""
+
+
 def reaching_posture(
     rig: Rig, standing: Posture, moment: Moment, goal: Doubles, grip: Grip
 ) -> Posture | None:
@@ -50,10 +55,13 @@ def reaching_posture(
     hips = standing.root_m - standing.turns["root"] @ (rig.heads[0] - figure.hips)
     upper, lower = _arm_lengths(rig, own_side)
 
+    squats = float(np.clip(1.0 - goal[2] / (_LOW * hips[2]), 0.0, 1.0))
+
     def bent(share: float) -> tuple[Posture, Doubles]:
         """Return the posture without the arm, and the place of its shoulder."""
-        crouch = 0.95 * max(0.0, share - 0.4) * figure.leg_m if goal[2] < hips[2] else 0.0
-        back = 0.16 * share * figure.leg_m
+        down = (0.95 + _SQUAT * squats) * max(0.0, share - 0.4) * figure.leg_m
+        crouch = down if goal[2] < hips[2] else 0.0
+        back = (0.16 - 0.1 * squats) * share * figure.leg_m
         pelvis, belly, chest = (turn_about("y", share * angle) for angle in _LEAN_DEG)
         middle = hips - [back, 0.0, crouch + 0.04 * share]
         turns = dict(standing.turns)

@@ -30,8 +30,12 @@ Doubles = NDArray[np.float64]
 _HEAVIEST_KG, _WIDEST_M, _LONGEST_M = 4.0, 0.11, 0.45
 """Of what one hand takes: its mass, its width between palm and fingers, its longest side."""
 
-_FARTHEST_M = 0.72
-"""From where one stands to what one takes, at most [m]."""
+_FARTHEST_M = 0.85
+"""From a free place to what one takes there, at most [m]."""
+
+_NEAR_M, _LEANS_M = 0.6, 0.1
+"""From where one stands to what one takes, as far as one can get so near: by a step towards the
+table, which is so much nearer than one walks past it [m]."""
 
 _ALONGSIDE = 0.8
 """Cosine from which a thing's longer side is along the fingers."""
@@ -174,8 +178,8 @@ def ways_to_take(actor: Actor, crowd: Crowd, size: BodySize, name: str) -> Itera
         return
     goal = _middle(body)
     x, y, _ = goal.tolist()
-    for feet in crowd.places_beside(actor.name, size, (x, y), _FARTHEST_M):
-        yaw = float(np.arctan2(y - feet[1], x - feet[0]))
+    for place in crowd.places_beside(actor.name, size, (x, y), _FARTHEST_M):
+        feet, yaw = _before(place, (x, y))
         grip = grip_of(body, actor.scale, yaw)
         side = reaching_hand(actor, grip, feet, yaw, goal[None])
         if side is not None:
@@ -192,11 +196,20 @@ def ways_to_put(
     extent = _size(thing)
     around = 0.5 * float(np.hypot(extent[0], extent[1]))
     for spot in free_spots(body, crowd.bodies(without=held.name), around):
-        for feet in crowd.places_beside(actor.name, size, (spot[0], spot[1]), _FARTHEST_M, count=1):
+        x, y, _ = spot.tolist()
+        for place in crowd.places_beside(actor.name, size, (x, y), _FARTHEST_M, count=1):
             goal = spot + np.array([0.0, 0.0, 0.5 * float(extent[2]) + _ABOVE_M])
-            yaw = float(np.arctan2(spot[1] - feet[1], spot[0] - feet[0]))
+            feet, yaw = _before(place, (x, y))
             if reaching_hand(actor, held.grip, feet, yaw, goal[None], (held.grip.side,)):
                 yield Putting(actor, held, goal, feet, yaw)
+
+
+def _before(place: Place, goal: Place) -> tuple[Place, float]:
+    """Return where one stands who comes by a free place, and which way one looks [rad]."""
+    x, y = goal[0] - place[0], goal[1] - place[1]
+    away = max(float(np.hypot(x, y)), 1e-6)
+    nearer = float(np.clip(away - _NEAR_M, 0.0, _LEANS_M)) / away
+    return (place[0] + nearer * x, place[1] + nearer * y), float(np.arctan2(y, x))
 
 
 def _size(body: Body) -> Doubles:

@@ -135,6 +135,25 @@ def test_feet_stand_while_a_hand_reaches_down() -> None:
     world.close()
 
 
+def test_one_squats_for_what_is_low() -> None:
+    low = placed("low", box("low", (0.1, 0.1, 0.14)), 1.0, 1.2, static=True)
+    world, anna = room(thing(1.0, 1.2, 0.14), low)
+    assert anna.walker.take("thing")
+    seen, lowest = until_standing(world, anna), 9.0
+    assert seen == ["walking", "reaching", "standing"]
+    assert anna.walker.holds == "thing"
+    assert anna.walker.put_on("near")
+    for _ in range(900):
+        world.step(8)
+        rig = anna.skeleton()
+        lowest = min(lowest, float(rig.joints[:, 2].min()))
+        if anna.walker.activity == "standing":
+            break
+    assert lowest > -0.01
+    assert anna.walker.holds == ""
+    world.close()
+
+
 @pytest.mark.parametrize(
     "more",
     [
