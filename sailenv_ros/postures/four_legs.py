@@ -27,7 +27,7 @@ from sailenv_ros.types.instance_states import rotation_matrices
 from sailenv_ros.types.rig import Rig
 from sailenv_ros.types.rotations import between, quaternions_of
 
-__all__ = ["Raise", "four_legged_posture"]
+__all__ = ["PawOffset", "four_legged_posture"]
 
 Doubles = NDArray[np.float64]
 
@@ -68,7 +68,7 @@ _MOST_BEND_DEG = 24.0
 _FORWARD = np.array([1.0, 0.0, 0.0])
 
 
-class Raise(NamedTuple):
+class PawOffset(NamedTuple):
     """How far a paw is from where it stands, over the height of its leg.
 
     Attributes
@@ -90,7 +90,7 @@ def four_legged_posture(
     tail: TailHabit = DOG_TAIL,
     sits: float = 0.0,
     lies: tuple[float, Recline] | None = None,
-    raised: tuple[Raise, Raise] = (Raise(), Raise()),
+    offsets: tuple[PawOffset, PawOffset] = (PawOffset(), PawOffset()),
 ) -> Posture:
     """Return the posture of an animal on its way, in the frame of its body there.
 
@@ -111,8 +111,8 @@ def four_legged_posture(
         How far it has sat down on its haunches, 0 to 1.
     lies : tuple of float and Recline, or None
         How far it has lain down, 0 to 1, and how it lies.
-    raised : (2,) tuple of Raise
-        The paws in front, and behind, of one in the air.
+    offsets : (2,) tuple of PawOffset
+        Of the paws in front, and behind, of one in the air.
     """
     figure = animal_figure_of(rig)
     own = [own_print(moment, place) for place in moment.feet]
@@ -125,7 +125,7 @@ def four_legged_posture(
         )
     lain = 0.0 if lies is None else lies[0]
     for paw in paws:
-        paw.lift(figure, raised[paw.number // 2])
+        paw.lift(figure, offsets[paw.number // 2])
     for paw in paws[2:]:
         paw.roll_deg += sits * _HOCK_DEG
         paw.knee_up = 0.6 * sits + 0.1 * lain
@@ -207,10 +207,10 @@ class _Paw:
         found.hangs_deg = _PADS_DEG[number // 2] * vigour * raised * (1.0 - 0.6 * share)
         return found
 
-    def lift(self, figure: AnimalFigure, by: Raise) -> None:
-        """Raise the paw, which hangs then, and fold the leg."""
-        self.joint += float(figure.legs_m[self.number]) * np.array([by.ahead, 0.0, by.up])
-        folded = min(by.up / _HIGH, 1.0)
+    def lift(self, figure: AnimalFigure, offset: PawOffset) -> None:
+        """PawOffset the paw, which hangs then, and fold the leg."""
+        self.joint += float(figure.legs_m[self.number]) * np.array([offset.ahead, 0.0, offset.up])
+        folded = min(offset.up / _HIGH, 1.0)
         self.roll_deg += _ROLL_DEG[self.number // 2][1] * folded
         self.hangs_deg += _PADS_DEG[self.number // 2] * folded
 
@@ -292,7 +292,7 @@ def _lain(
     for paw in paws:
         rolls = (WRIST_DEG, HOCK_DEG)[paw.number // 2]
         paw.roll_deg += share * (rolls - paw.roll_deg)
-        paw.aside = (0.5, 0.5)[paw.number // 2] * share * (1.0 if paw.side == "L" else -1.0)
+        paw.aside = 0.5 * share * (1.0 if paw.side == "L" else -1.0)
     begin = quaternions_of(np.array(list(turns.values())))
     end = np.broadcast_to(quaternions_of(level[None]), begin.shape)
     turned = rotation_matrices(between(begin, end, share))

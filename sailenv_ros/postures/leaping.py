@@ -15,7 +15,7 @@ from sailenv_ros.postures.animal_bearing import TailHabit, animal_tail
 from sailenv_ros.postures.animal_figure import AnimalFigure
 from sailenv_ros.postures.easing import smooth_step
 from sailenv_ros.postures.footsteps import Moment
-from sailenv_ros.postures.four_legs import Raise, four_legged_posture
+from sailenv_ros.postures.four_legs import PawOffset, four_legged_posture
 from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.reclining import Recline
 from sailenv_ros.postures.skeleton import Posture, turn_about
@@ -54,15 +54,15 @@ class LeapInstant(NamedTuple):
         Nose upwards; about the paws behind, or downwards about those in front.
     crouch : float
         How far it has lain down.
-    raised : (2,) tuple of Raise
-        The paws in front, and behind.
+    offsets : (2,) tuple of PawOffset
+        Of the paws in front, and behind.
     """
 
     ahead_m: float
     above_m: float
     pitch_deg: float
     crouch: float
-    raised: tuple[Raise, Raise]
+    offsets: tuple[PawOffset, PawOffset]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,7 +99,7 @@ class Leap:
             return self._up_at(time_s)
         up = self._up_at(self.duration_s - time_s)
         ahead_m = self.ahead_m - up.ahead_m
-        fore, hind = (Raise(up=paw.up, ahead=-paw.ahead) for paw in reversed(up.raised))
+        fore, hind = (PawOffset(up=paw.up, ahead=-paw.ahead) for paw in reversed(up.offsets))
         return LeapInstant(ahead_m, up.above_m, -up.pitch_deg, up.crouch, (fore, hind))
 
     def _up_at(self, time_s: float) -> LeapInstant:
@@ -109,19 +109,21 @@ class Leap:
         settled = min(max((time_s - self.duration_s + _SETTLE_S) / _SETTLE_S, 0.0), 1.0)
         crouch = _CROUCH * smooth_step(crouched) * (1.0 - smooth_step(reared))
         crouch += _GIVE * math.sin(math.pi * settled) ** 2
-        pitch, raised = self._in_flight(flown, reared)
+        pitch, offsets = self._in_flight(flown, reared)
         above_m = self.up_m * flown + 4.0 * self.arc_m * flown * (1.0 - flown)
-        return LeapInstant(self.ahead_m * flown, above_m, pitch, crouch, raised)
+        return LeapInstant(self.ahead_m * flown, above_m, pitch, crouch, offsets)
 
-    def _in_flight(self, flown: float, reared: float = 1.0) -> tuple[float, tuple[Raise, Raise]]:
+    def _in_flight(
+        self, flown: float, reared: float = 1.0
+    ) -> tuple[float, tuple[PawOffset, PawOffset]]:
         """Return the pitch, and how paws are raised."""
         slope = math.degrees(math.atan2(self.up_m, self.ahead_m))
         most = min(_STEEP * slope, _MOST_REAR_DEG)
         pitch = most * smooth_step(reared) * (1.0 - smooth_step(flown))
         bump = math.sin(math.pi * (flown + _BEFORE * reared) / (1.0 + _BEFORE)) ** 2
-        fore = Raise(up=_TUCK * bump, ahead=_REACH * bump)
+        fore = PawOffset(up=_TUCK * bump, ahead=_REACH * bump)
         bump = math.sin(math.pi * flown)
-        hind = Raise(up=_TUCK * bump**2, ahead=-_TRAIL * math.sin(2.0 * math.pi * flown) * bump)
+        hind = PawOffset(up=_TUCK * bump**2, ahead=-_TRAIL * math.sin(2.0 * math.pi * flown) * bump)
         return pitch, (fore, hind)
 
 
@@ -146,9 +148,9 @@ def leap_over_edge(
     pairs = (hind, fore) if down else (fore, hind)
     places = [place * [-1.0 if down else 1.0, 0.0, 1.0] for place, _ in pairs]
     for flown in np.linspace(0.05, 0.95, 19).tolist():
-        pitch, raised = leap._in_flight(flown)
+        pitch, offsets = leap._in_flight(flown)
         turn = turn_about("y", -pitch)
-        for paw, place, (_, tall) in zip(raised, places, pairs, strict=True):
+        for paw, place, (_, tall) in zip(offsets, places, pairs, strict=True):
             own = place - places[1] + [tall * paw.ahead, 0.0, tall * paw.up]
             x, _, z = (turn @ own + places[1] * [1.0, 0.0, 0.0]).tolist()
             if x + flown * ahead_m > edge_m - _CLEAR_M:
@@ -189,11 +191,11 @@ def leaping_posture(
         look=look,
         tail=tail,
         lies=(instant.crouch, recline),
-        raised=instant.raised,
+        offsets=instant.offsets,
     )
-    carried_m = float(level.root_m[2])
+    # It stays up where the body goes down.
     upright = animal_tail(
-        *(rig, level.turns["root"], carried_m, time_s),
+        *(rig, level.turns["root"], 0.0, time_s),
         seed=seed,
         habit=tail,
         gladness=look.gladness,

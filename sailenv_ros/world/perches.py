@@ -95,8 +95,8 @@ def _perches_over(
     size = (2 * int(np.ceil(_WIDE * half_m / STEP_M)) + 1, 2 * half + 1)
     top = maximum_filter(grid, size, mode="constant", cval=-1.0)
     low = minimum_filter(grid, size, mode="constant", cval=-1.0)
-    round_ = (2 * half + 1, 2 * int(np.ceil(_TAIL * half)) + 1)
-    around = maximum_filter(grid, round_, mode="constant", cval=-1.0)
+    room = (2 * half + 1, 2 * int(np.ceil(_TAIL * half)) + 1)
+    around = maximum_filter(grid, room, mode="constant", cval=-1.0)
     fits = (top - low < _UNEVEN_M) & (top > LOWEST_M) & (top < HIGHEST_M)
     fits &= around < top + _BESIDE_M
     found = []

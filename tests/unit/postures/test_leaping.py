@@ -26,7 +26,7 @@ def test_a_leap_leads_from_one_end_to_the_other() -> None:
         assert (first.ahead_m, first.above_m) == pytest.approx(begin)
         assert (last.ahead_m, last.above_m) == pytest.approx(end)
         for still in (first, last):
-            assert np.abs([still.pitch_deg, still.crouch, *np.ravel(still.raised)]).max() < 1e-9
+            assert np.abs([still.pitch_deg, still.crouch, *np.ravel(still.offsets)]).max() < 1e-9
 
 
 @pytest.mark.parametrize("down", [False, True])
@@ -46,6 +46,6 @@ def test_down_is_up_backwards_with_the_other_legs() -> None:
         assert other.ahead_m == pytest.approx(0.6 - one.ahead_m)
         assert other.above_m == pytest.approx(one.above_m)
         assert other.pitch_deg == pytest.approx(-one.pitch_deg)
-        fore, hind = one.raised
+        fore, hind = one.offsets
         swapped = ((hind.up, -hind.ahead), (fore.up, -fore.ahead))
-        assert np.ravel(other.raised) == pytest.approx(np.ravel(swapped))
+        assert np.ravel(other.offsets) == pytest.approx(np.ravel(swapped))
