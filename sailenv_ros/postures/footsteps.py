@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.postures.easing import smooth_step
+from sailenv_ros.postures.polylines import Polyline
 
 __all__ = [
     "FootPrint",
@@ -34,6 +35,9 @@ _LEAST_WAY_M = 0.12
 
 MOST_TURN_RAD = (0.9, 0.4)
 """Of one step on the spot, by two feet and by four [rad]."""
+
+_TURN = 0.6
+"""Share of a turn of one step on the spot that costs as much as a step ahead."""
 
 _FOUR = (2, 0, 3, 1)
 """Order in which four feet step: each in front after the one behind it."""
@@ -255,17 +259,17 @@ def way_along(feet: tuple[FootPrint, ...], corners: ArrayLike, stride: Stride) -
     corners : (N, 2) floats
         Of the line [m]; it begins where the body is.
     """
-    line = _Line(np.asarray(corners, np.float64)[:, :2])
-    length = line.length_m
-    count = max(1, int(np.ceil(length / stride.length_m)))
-    step = length / count
-    prints = []
+    line = Polyline(np.asarray(corners, np.float64)[:, :2])
     order = stride.order
+    turn_rad = _TURN * MOST_TURN_RAD[bool(stride.base_m)]
     # At the end the other feet come to stand beside the last one.
-    for number in range(1, count + len(order)):
-        foot, way_m = order[(number - 1) % len(order)], number * step if number <= count else length
-        x, y = line.at(way_m)
-        prints.append((foot, stride.foot(x, y, line.heading(way_m), foot)))
+    ways_m = np.append(line.stops(stride.length_m, turn_rad), [line.length_m] * (len(order) - 1))
+    prints = []
+    for number, (place, heading) in enumerate(
+        zip(line.at(ways_m).tolist(), line.headings(ways_m).tolist(), strict=True)
+    ):
+        foot = order[number % len(order)]
+        prints.append((foot, stride.foot(*place, heading, foot)))
     return Way(start=feet, prints=tuple(prints), step_s=stride.step_s, lead_m=stride.lead_m)
 
 
@@ -296,29 +300,6 @@ def _turned(way: Way, heading: float, stride: Stride) -> Way:
     if turn < (0.02 if way.prints else 0.35):
         return way
     return way.then(way_to_turn(feet, heading, stride))
-
-
-class _Line:
-    """Corners of a line, by the way along it."""
-
-    def __init__(self, corners: Doubles) -> None:
-        self._corners = corners
-        self._ways = np.concatenate(
-            [[0.0], np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1))]
-        )
-
-    @property
-    def length_m(self) -> float:
-        return float(self._ways[-1])
-
-    def at(self, way_m: float) -> tuple[float, float]:
-        x, y = (np.interp(way_m, self._ways, self._corners[:, k]) for k in (0, 1))
-        return float(x), float(y)
-
-    def heading(self, way_m: float, window_m: float = 0.3) -> float:
-        before = self.at(max(way_m - window_m, 0.0))
-        after = self.at(min(way_m + window_m, self.length_m))
-        return float(np.arctan2(after[1] - before[1], after[0] - before[0]))
 
 
 def standing_feet(x: float, y: float, yaw: float, stride: Stride) -> tuple[FootPrint, ...]:

@@ -19,10 +19,10 @@ from sailenv_ros.types.rig import Rig
 
 __all__ = ["Gait", "gait_of"]
 
-_RADIUS, _SWING = 0.172, 0.19
+_RADIUS, _SWING = 0.142, 0.22
 """Of a person, and what arms need beside it to swing, as shares of the height."""
 
-_LEAST_SWING = 0.15
+_LEAST_SWING = 0.1
 """Share of their swing that arms have beside furniture: hands come before the cylinder."""
 
 

@@ -27,6 +27,10 @@ _MOST_LOOK_DEG = (62.0, 32.0)
 """Of the head, sideways and up or down [deg]."""
 
 
+_CLOSE_DEG, _CLOSE_IN = 34.0, 0.45
+"""How far lower arms are bent that are held close [deg], and how far they point inwards."""
+
+
 def hanging_arms(
     rig: Rig,
     chest: Doubles,
@@ -34,11 +38,13 @@ def hanging_arms(
     ease_deg: float = 10.0,
     spread: float = 0.16,
     out: float = 0.0,
+    close: float = 0.0,
 ) -> dict[str, Doubles]:
     """Return the turns of arms that hang, swung forward by angles, left and right [deg].
 
     `spread` is the tangent of the angle from which upper arms hang straight down. Where that is
-    less than the tangent `out` of straight arms needs, lower arms hang outwards, too.
+    less than the tangent `out` of straight arms needs, lower arms hang outwards, too. `close`, 0 to
+    1, is how far hands are held before the body, where there is no room beside it.
     """
     spread = max(spread, out)
     lengths = [
@@ -50,9 +56,10 @@ def hanging_arms(
     turns: dict[str, Doubles] = {}
     for (side, sign), swing in zip(SIDES, swing_deg, strict=True):
         angle = np.radians(swing)
-        bend = angle + np.radians(ease_deg + 0.6 * max(swing, 0.0))
+        bend = angle + np.radians(ease_deg + 0.6 * max(swing, 0.0) + _CLOSE_DEG * close)
         upper = np.array([np.sin(angle), spread * sign, -np.cos(angle)])
-        lower = np.array([np.sin(bend), lower_out * sign, -np.cos(bend)])
+        aside = lower_out - (lower_out + _CLOSE_IN) * close
+        lower = np.array([np.sin(bend), aside * sign, -np.cos(bend)])
         turns |= bend_arm(rig, side, chest, None, upper, lower)
         # Shoulders are raised at rest, where arms are spread.
         turns[f"shoulder01.{side}"] = chest @ turn_about("x", -_DROP_DEG * sign)

@@ -31,6 +31,9 @@ Doubles = NDArray[np.float64]
 _LIFTS, _LANDS = 0.12, 0.92
 """Shares of a step at which the swinging foot leaves the floor and touches it."""
 
+_CLOSE_ROOM = 0.4
+"""Share of the room that arms need, below which they are held close."""
+
 _STRAIGHT = 0.985
 """Share of its length to which a leg that stands is stretched."""
 
@@ -102,8 +105,12 @@ def walking_posture(
     arm = 46.0 * moment.swing_room * float(np.clip(ahead, -1.0, 1.0))
     swings_deg = -arm + 0.6 * breath, arm + 0.6 * breath
     room = moment.swing_room
+    close = smooth_step(float(np.clip(1.0 - room / _CLOSE_ROOM, 0.0, 1.0)))
     turns |= hanging_arms(
-        rig, chest, swings_deg, spread=0.09 + 0.07 * room, out=room * rig.arms_out
+        *(rig, chest, swings_deg),
+        spread=0.09 + 0.07 * room - 0.06 * close,
+        out=room * rig.arms_out,
+        close=close,
     )
     turns |= looking(turn_about("y", 1.0), look)
     turns |= hands_at_ease(rig, turns)

@@ -251,7 +251,7 @@ def test_one_who_cannot_pass_another_takes_the_seat_on_this_side() -> None:
     world.step(1)
     assert [seat.y for seat in anna.walker.crowd.seats()] == [-0.5, 0.5]
     assert anna.walker.sit_on("sofa")
-    for _ in range(200):
+    for _ in range(300):
         world.step(12)
         if anna.walker.activity == "seated":
             break
