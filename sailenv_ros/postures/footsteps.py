@@ -265,11 +265,11 @@ def way_along(feet: tuple[FootPrint, ...], corners: ArrayLike, stride: Stride) -
     # At the end the other feet come to stand beside the last one.
     ways_m = np.append(line.stops(stride.length_m, turn_rad), [line.length_m] * (len(order) - 1))
     prints = []
-    for number, (place, heading) in enumerate(
+    for number, ((x, y), heading) in enumerate(
         zip(line.at(ways_m).tolist(), line.headings(ways_m).tolist(), strict=True)
     ):
         foot = order[number % len(order)]
-        prints.append((foot, stride.foot(*place, heading, foot)))
+        prints.append((foot, stride.foot(x, y, heading, foot)))
     return Way(start=feet, prints=tuple(prints), step_s=stride.step_s, lead_m=stride.lead_m)
 
 
