@@ -15,7 +15,7 @@ from sailenv_content.generation.asset_index import AssetIndex
 from sailenv_content.generation.companion_spots import CompanionSpots
 from sailenv_content.generation.items import Item, Namer
 from sailenv_content.generation.pieces import PieceChooser, RoomStyle
-from sailenv_content.generation.plan import Area, Block, RoomPlan
+from sailenv_content.generation.plan import Approach, Area, Block, RoomPlan
 from sailenv_content.generation.positions import APART_M, Positioner, offset
 from sailenv_content.generation.rugs import GAP_M, lies_under, on_its_edge, thin
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
@@ -48,6 +48,11 @@ class _Group:
     clear: list[Block] = field(default_factory=list)
     ends: dict[tuple[int, str], Item] = field(default_factory=dict)
     names: list[tuple[Item, str]] = field(default_factory=list)
+
+    @property
+    def approaches(self) -> list[Approach]:
+        """Floor on which one comes to the pieces."""
+        return [item.clear for item in self.items if item.clear]
 
 
 @dataclass(slots=True, kw_only=True)
@@ -117,7 +122,7 @@ class Furnisher:
             item = self._proposed(name, rule, asset, group)
             if item is None or not self._with_companions(item, rule, group):
                 continue
-            if self.plan.connects(each.block for each in group.items):
+            if self.plan.connects([each.block for each in group.items], group.approaches):
                 item.needed = needed
                 self._accept(group, name)
                 return True
@@ -134,6 +139,7 @@ class Furnisher:
         self.plan.stand(
             [thin(item.block) if item.is_flat else item.block for item in group.items],
             group.clear,
+            group.approaches,
         )
         self.items.extend(group.items)
 

@@ -8,21 +8,34 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
-__all__ = ["BODY_RADIUS_M", "CELL_M", "Area", "Block", "WallGap", "RoomPlan", "WallSide"]
+__all__ = [
+    "BODY_RADIUS_M",
+    "CELL_M",
+    "Approach",
+    "Area",
+    "Block",
+    "RoomPlan",
+    "WallGap",
+    "WallSide",
+]
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 CELL_M = 0.05
-BODY_RADIUS_M = 0.25
+BODY_RADIUS_M = 0.28
 """Radius of the walking agent: half of the narrowest passage [m]."""
 
 _HEAD_M = 1.9
+_BESIDE_M = 0.1
+"""From the middle of a body to the floor that it is said to be on [m]."""
+
 _STEP_M = 0.05
 """Greatest height of an obstacle that one can step over [m]."""
 
@@ -82,6 +95,10 @@ class Block:
         local = np.abs((points - (self.x, self.y)) @ self.axes().T)
         over = np.maximum(local - (self.half_x, self.half_y), 0.0)
         return np.asarray(np.hypot(over[..., 0], over[..., 1]))
+
+
+Approach: TypeAlias = tuple[Block, ...]
+"""Floor before and beside a piece of furniture: one must be able to walk to one of these."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -202,6 +219,7 @@ class RoomPlan:
     walls: Iterable[Block] = ()
     solid: list[Block] = field(default_factory=list)
     clear: list[Block] = field(default_factory=list)
+    approaches: list[Approach] = field(default_factory=list)
     _blocked: Flags = field(init=False)
     _points: Floats = field(init=False)
     _origin: Floats = field(init=False)
@@ -228,9 +246,23 @@ class RoomPlan:
         """Return whether nothing stands where a box is; floor that stays free may be shared."""
         return not any(block.meets(other) for other in self.solid)
 
-    def connects(self, more: Iterable[Block]) -> bool:
-        """Return whether one can walk between all doors with more boxes in the way."""
-        return self.walkable(more) is not None
+    def connects(self, more: Iterable[Block], approaches: Iterable[Approach] = ()) -> bool:
+        """Return whether one can walk between all doors, and to each piece, with more in the way.
+
+        Parameters
+        ----------
+        more : iterable of Block
+        approaches : iterable of Approach
+            Of more pieces.
+        """
+        walkable = self.walkable(more)
+        if walkable is None:
+            return False
+        points = self._points[walkable]
+        return all(
+            any((floor.distance_m(points) < _BESIDE_M).any() for floor in of_one)
+            for of_one in (*self.approaches, *approaches)
+        )
 
     def walkable(self, more: Iterable[Block] = (), wider_m: float = 0.0) -> Flags | None:
         """Return (X, Y): where one can walk to from the doors; None if they are not connected."""
@@ -267,12 +299,18 @@ class RoomPlan:
             least = np.minimum(least, block.distance_m(self._points))
         return np.asarray(least)
 
-    def stand(self, blocks: Iterable[Block], clear: Iterable[Block] = ()) -> None:
-        """Put boxes into the plan, and floor that stays free."""
+    def stand(
+        self,
+        blocks: Iterable[Block],
+        clear: Iterable[Block] = (),
+        approaches: Iterable[Approach] = (),
+    ) -> None:
+        """Put boxes into the plan, floor that stays free, and ways to come to pieces."""
         for block in blocks:
             self.solid.append(block)
             _block_out(self._blocked, self._points, block, BODY_RADIUS_M)
         self.clear.extend(clear)
+        self.approaches.extend(approaches)
 
 
 def _block_out(blocked: Flags, points: Floats, block: Block, radius_m: float) -> None:
