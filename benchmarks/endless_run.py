@@ -6,7 +6,7 @@
 `make` has two processes make the parts of the stream and writes a line into FILE for each that is
 whole: the SHA-256 of its frames, those of some frames of their own, memory and time. All its
 processes are ended by SIGKILL at random moments of the first fifth, and begun again; later calls go
-on, too. `check` counts the parts, makes 200 random frames by their numbers in a process that has
+on, too. `check` counts the parts, makes 200 random frames by their numbers in processes that have
 made none, and tells speed and memory of what ran undisturbed.
 """
 
@@ -100,6 +100,18 @@ def _maker(run: Run, on_frame: Callable[[], None]) -> Callable[[int], dict[str, 
     return make
 
 
+def _seeker(run: Run, on_frame: Callable[[], None]) -> Callable[[int], tuple[int, str]]:
+    """Return what makes a frame by its number, in a worker that has made none."""
+    stream = run.open()
+
+    def seek(number: int) -> tuple[int, str]:
+        digest = digest_of(stream[number])
+        on_frame()
+        return number, digest
+
+    return seek
+
+
 def main() -> int:
     """Make or check; 0 if all is as it should be."""
     parser = argparse.ArgumentParser(
@@ -179,8 +191,9 @@ def _check(file: Path, run: Run) -> int:
     whole = parts == list(range(run.parts))
     print(f"{run.frames:,} frames: {len(parts)} parts, each once: {whole}")
     single = {int(n): digest for line in lines for n, digest in line["single"].items()}
-    with run.open() as stream:
-        same = sum(digest_of(stream[number]) == single[number] for number in sorted(single))
+    pool = WorkerPool(workers=2, maker=_seeker, arguments=(run,), piece="frame")
+    found = dict(pool.run(sorted(single), lambda made: None))
+    same = sum(found[number] == digest for number, digest in single.items())
     print(f"{same} of {len(single)} random frames are the same by their numbers")
     last = {line["process"] for line in sorted(lines, key=lambda line: line["end_s"])[-2:]}
     undisturbed = [line for line in lines if line["process"] in last]
