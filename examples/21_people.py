@@ -25,7 +25,7 @@ objects:
   - {name: table, asset: coffee_table_01, position: [0.6, 0.4, 0], static: true}
   - {name: shelf, asset: cabinet_01, position: [2.0, 2.1, 0], rotation: [0, 0, -90], static: true}
   - {name: mug, asset: cup_02, position: [0.6, 0.4, 0.46], colour: "#b03020"}
-  - {name: anna, asset: person_01, position: [-0.1, -0.6, 0], behaviours: [{type: lie}]}
+  - {name: anna, asset: person_01, position: [-0.1, -0.6, 0], behaviours: [{type: lie, beds: [bed]}]}
   - {name: ben, asset: person_20, position: [-0.8, 0.9, 0],
      behaviours: [{type: sit, seats: [sofa]}]}
   - {name: cleo, asset: person_05, position: [0.9, -0.6, 0],
@@ -36,7 +36,7 @@ lights:
   - {name: sun, type: directional, direction: [-0.6, 0.5, -1], intensity: 1.5}
   - {name: lamp, type: point, position: [0.6, 0, 2.4], intensity: 12}
 """
-SECONDS = 16
+SECONDS = 22
 COLOURS = ((255, 170, 40), (60, 220, 120), (70, 150, 255), (240, 90, 200))
 
 with tempfile.TemporaryDirectory() as folder:
