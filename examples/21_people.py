@@ -25,7 +25,8 @@ objects:
   - {name: table, asset: coffee_table_01, position: [0.6, 0.4, 0], static: true}
   - {name: shelf, asset: cabinet_01, position: [2.0, 2.1, 0], rotation: [0, 0, -90], static: true}
   - {name: mug, asset: cup_02, position: [0.6, 0.4, 0.46], colour: "#b03020"}
-  - {name: anna, asset: person_01, position: [-0.1, -0.6, 0], behaviours: [{type: lie, beds: [bed]}]}
+  - {name: anna, asset: person_01, position: [-0.1, -0.6, 0],
+     behaviours: [{type: lie, beds: [bed]}]}
   - {name: ben, asset: person_20, position: [-0.8, 0.9, 0],
      behaviours: [{type: sit, seats: [sofa]}]}
   - {name: cleo, asset: person_05, position: [0.9, -0.6, 0],
