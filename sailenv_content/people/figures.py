@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
 
@@ -53,14 +53,8 @@ class Build:
 
 def figure(data: BodyData, build: Build) -> Doubles:
     """Return the (V, 3) vertices of a body and its helpers [m]; the soles are at z = 0."""
-    short = data.base.copy()
-    for name, share in _targets(build):
-        if share > _LEAST_SHARE:
-            short += share * data.target(name)
-    taller = np.zeros_like(short)
-    for name, share in _height_targets(build):
-        if abs(share) > _LEAST_SHARE:
-            taller += share * data.target(name)
+    short = _moved(data, data.base, _targets(build))
+    taller = _moved(data, np.zeros_like(short), _height_targets(build))
     least, most = 0.0, 1.0
     for _ in range(_HALVINGS):
         middle = 0.5 * (least + most)
@@ -69,6 +63,15 @@ def figure(data: BodyData, build: Build) -> Doubles:
     vertices = short + 0.5 * (least + most) * taller
     vertices[:, 2] -= vertices[:BODY_VERTICES, 2].min()
     return vertices
+
+
+def _moved(data: BodyData, vertices: Doubles, targets: Iterable[tuple[str, float]]) -> Doubles:
+    """Return vertices that shares of targets have moved."""
+    found = vertices.copy()
+    for name, share in targets:
+        if abs(share) > _LEAST_SHARE:
+            found += share * data.target(name)
+    return found
 
 
 def _height_targets(build: Build) -> Iterator[tuple[str, float]]:

@@ -208,7 +208,7 @@ class _Paw:
         return found
 
     def lift(self, figure: AnimalFigure, offset: PawOffset) -> None:
-        """PawOffset the paw, which hangs then, and fold the leg."""
+        """Raise the paw, which hangs then, and fold the leg."""
         self.joint += float(figure.legs_m[self.number]) * np.array([offset.ahead, 0.0, offset.up])
         folded = min(offset.up / _HIGH, 1.0)
         self.roll_deg += _ROLL_DEG[self.number // 2][1] * folded

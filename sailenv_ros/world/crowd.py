@@ -23,7 +23,7 @@ from sailenv_ros.world.perches import Perch, perches_of
 from sailenv_ros.world.seats import Seat, seats_of
 from sailenv_ros.world.ways import Disc, Place, nearest_cell, way_between
 
-__all__ = ["Crowd", "Disc", "Inhabitant", "body_size"]
+__all__ = ["Crowd", "Inhabitant", "body_size"]
 
 Doubles = NDArray[np.float64]
 

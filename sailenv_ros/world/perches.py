@@ -65,10 +65,13 @@ def perches_of(body: Body, half_m: float) -> tuple[Perch, ...]:
     matrix = body.world_from_body()
     if body.placement.asset.category not in BED_CATEGORIES or matrix[2, 2] < 0.98:
         return ()
+    from scipy.ndimage import grey_closing  # few have a cat
+
     field = height_field_of(body)
+    heights = grey_closing(field.heights, size=3)  # over seams between cushions
     origin, found = np.array([field.x[0], field.y[0]]), []
     for out in _OUT:
-        for row, column, top, steps in _perches_over(field.heights, out, half_m):
+        for row, column, top, steps in _perches_over(heights, out, half_m):
             own = origin + STEP_M * np.array([row, column])
             world = matrix @ np.array([*own, top, 1.0])
             found.append(
@@ -86,11 +89,11 @@ def _perches_over(
     heights: Doubles, out: tuple[int, int], half_m: float
 ) -> list[tuple[int, int, float, int]]:
     """Return row, column and height of perches by an edge, and their steps to it."""
-    from scipy.ndimage import grey_closing, maximum_filter, minimum_filter  # few have a cat
+    from scipy.ndimage import maximum_filter, minimum_filter
 
     axis, towards = (0, out[0]) if out[0] else (1, out[1])
-    # Rows ascend towards the edge; seams between cushions are closed.
-    grid = np.moveaxis(grey_closing(heights, size=3), axis, 0)[::towards]
+    # Rows ascend towards the edge.
+    grid = np.moveaxis(heights, axis, 0)[::towards]
     half = int(np.ceil(half_m / STEP_M))
     size = (2 * int(np.ceil(_WIDE * half_m / STEP_M)) + 1, 2 * half + 1)
     top = maximum_filter(grid, size, mode="constant", cval=-1.0)

@@ -29,12 +29,12 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.activities.base import Actor, matrix_of
 from sailenv_ros.world.attention import Attention
-from sailenv_ros.world.crowd import Crowd, Disc, body_size
+from sailenv_ros.world.crowd import Crowd, body_size
+from sailenv_ros.world.ways import Disc, Place
 
 __all__ = ["Place", "Stepper", "yaw_of"]
 
 Doubles = NDArray[np.float64]
-Place = tuple[float, float]
 
 _BLOCKED_S = 1.2
 """Time for which one waits for another who is in the way [s]."""

@@ -137,16 +137,14 @@ class Walker(Stepper):
 
     def walk_to(self, place: Place) -> bool:
         """Begin to walk to a place [m]; False, and nothing begins, if no way leads there."""
-        return any(self._begins(place, None, round_others=do) for do in (True, False))
+        return self._walk(place, None)
 
     def walk_near(self, name: str) -> bool:
         """Begin to walk to where it stands before an object and faces it; False if it cannot."""
         if self.crowd is None:
             return False
         before = self.crowd.before(name, _STAND_OFF_M + self._radius_m)
-        if before is None:
-            return False
-        return any(self._begins(*before, round_others=do) for do in (True, False))
+        return before is not None and self._walk(*before)
 
     def sit_on(self, name: str) -> bool:
         """Begin to walk to a seat and sit down; False if it cannot."""
@@ -229,6 +227,10 @@ class Walker(Stepper):
         self._attention.target = name
 
     # -- inside ----------------------------------------------------------------------------
+
+    def _walk(self, place: Place, yaw: float | None) -> bool:
+        """Begin to walk to a place, round others if that leads there."""
+        return any(self._begins(place, yaw, round_others=do) for do in (True, False))
 
     def _begins(self, place: Place, yaw: float | None, *, round_others: bool) -> bool:
         """Begin to walk to a place; False if no way leads there, or something is being done."""

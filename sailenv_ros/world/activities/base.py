@@ -18,11 +18,11 @@ from sailenv_ros.postures.look import Look
 from sailenv_ros.postures.skeleton import Posture
 from sailenv_ros.types.model import Asset
 from sailenv_ros.types.rig import Rig
+from sailenv_ros.world.ways import Place
 
 __all__ = ["Actor", "Held", "Instant", "Place", "SpotActivity", "matrix_of"]
 
 Doubles = NDArray[np.float64]
-Place = tuple[float, float]
 
 _AHEAD = 0.4
 """How far beside the body something is still straight ahead, over half the width of the hips."""

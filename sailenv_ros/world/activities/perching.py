@@ -5,7 +5,7 @@ from __future__ import annotations
 import zlib
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from sailenv_ros.postures.footsteps import (
     standing_feet,
     way_to_turn,
 )
-from sailenv_ros.postures.four_legs import four_legged_posture
+from sailenv_ros.postures.gaits import gait_of
 from sailenv_ros.postures.leaping import Leap, leap_over_edge, leaping_posture
 from sailenv_ros.postures.reclining import Recline
 from sailenv_ros.postures.skeleton import Posture
@@ -134,8 +134,8 @@ class Perching(SpotActivity):
     def _begun(self, world_from_body: Doubles, moment: Moment) -> Iterator[_Stage]:
         """Yield what it does, one after another."""
         actor, stride, (x, y, z) = self._actor, self._stride, self._perch.place
-        up, down = (_Flight(leap, self._rest.recline) for leap in (self._up, self._down))
-        yield _Leaping(actor, up, world_from_body, moment, (x, y, self.yaw))
+        recline = self._rest.recline
+        yield _Leaping(actor, self._up, recline, world_from_body, moment, (x, y, self.yaw))
         side = 1.0 if zlib.crc32(f"{actor.name} {x:.2f} {y:.2f}".encode()) % 2 else -1.0
         along = self._out_yaw + side * 0.5 * np.pi
         way = way_to_turn(standing_feet(x, y, self.yaw, stride), along, stride)
@@ -149,7 +149,8 @@ class Perching(SpotActivity):
         yield _Stepping(actor, out, z)
         stands = moment_of(_end(out), stride.lead_m)
         own = stands.scaled(1.0 / actor.scale)
-        yield _Leaping(actor, down, matrix_of(stands, z), own, (*self.lands, self._out_yaw))
+        end = (*self.lands, self._out_yaw)
+        yield _Leaping(actor, self._down, recline, matrix_of(stands, z), own, end)
 
 
 class _Stage(ABC):
@@ -172,27 +173,20 @@ class _Stage(ABC):
         """Return the posture, in the frame of the body."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Flight:
-    """A leap, and how one lies who crouches."""
-
-    leap: Leap
-    recline: Recline
-
-
 class _Leaping(_Stage):
     """A leap from a pose to a place and a direction there; `moment` is that of an unscaled body."""
 
     def __init__(
         self,
         actor: Actor,
-        flight: _Flight,
+        leap: Leap,
+        recline: Recline,
         begin: Doubles,
         moment: Moment,
         end: tuple[float, float, float],
     ) -> None:
         super().__init__(actor)
-        self._leap, self._recline = flight.leap, flight.recline
+        self._leap, self._recline = leap, recline
         self._begin, self._end = begin, end
         self._stands = moment
 
@@ -284,12 +278,8 @@ def _at(now: Instant, moment: Moment, actor: Actor) -> Instant:
 
 
 def _standing(actor: Actor, now: Instant) -> Posture:
-    return four_legged_posture(
-        *(actor.rig, now.moment, now.time_s),
-        seed=now.seed,
-        look=now.look,
-        tail=tail_habit(actor.asset.category),
-    )
+    posture = gait_of(actor.asset).posture
+    return posture(actor.rig, now.moment, now.time_s, seed=now.seed, look=now.look)
 
 
 def perches_for(actor: Actor, crowd: Crowd, size: BodySize) -> list[Perch]:
