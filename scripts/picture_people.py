@@ -39,7 +39,7 @@ BEINGS: tuple[tuple[str, tuple[float, float], float, dict[str, Any]], ...] = (
 )
 """Those who are there: asset, place [m], direction [deg], and what each does."""
 
-BETWEEN_S, SECONDS = 4, 4
+BETWEEN_S, SECONDS = 4, 8
 """One after another takes its place."""
 
 LIES_S = 14
