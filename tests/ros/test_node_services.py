@@ -306,11 +306,26 @@ def test_a_long_request_holds_up_no_other_service(probe: Probe) -> None:
 # -- parameters ----------------------------------------------------------------------------
 
 
+def test_agents_that_come_and_go_leave_no_parameters(probe: Probe) -> None:
+    """`rclpy` keeps what a publisher declares, for ever."""
+
+    def names() -> list[str]:
+        return sorted(probe.call(ListParameters, "sim_node/list_parameters").result.names)
+
+    before = names()
+    probe.done(RegisterAgent, "register_agent", registration(name="passing"))
+    topic = f"{probe.namespace}/passing/rgb"
+    until(lambda: probe.node.count_publishers(topic), "the agent's topics")
+    assert names() == before
+    probe.done(DeleteAgent, "delete_agent", DeleteAgent.Request(name="passing"))
+    until(lambda: not probe.node.count_publishers(topic), "the agent's topics to end")
+    assert names() == before
+
+
 def test_every_parameter_is_described(probe: Probe) -> None:
     """Each parameter of ours has a description, and each number a range with it."""
     names = probe.call(ListParameters, "sim_node/list_parameters").result.names
-    own = [n for n in names if not n.startswith("qos_overrides.") and n != "use_sim_time"]
-    own.remove("start_type_description_service")
+    own = [n for n in names if n not in ("use_sim_time", "start_type_description_service")]
     request = DescribeParameters.Request(names=own)
     described = probe.call(DescribeParameters, "sim_node/describe_parameters", request).descriptors
     assert len(own) >= 20

@@ -23,7 +23,7 @@ from sailenv_ros.ros.nodes.parameter_table import (
     without_a_clock,
 )
 
-__all__ = ["declare_parameters", "declare_table"]
+__all__ = ["declare_parameters", "declare_table", "given_parameters"]
 
 
 def declare_parameters(node: Node) -> SimParameters:
@@ -56,20 +56,22 @@ def _declare(node: Node, name: str, entry: Parameter) -> Any:
         descriptor = _descriptor(entry, live=name in LIVE)
         value = node.declare_parameter(name, entry.default, descriptor).value
     except InvalidParameterTypeException:
-        raise entry.of_wrong_type(name, _given(node, name)) from None
+        raise entry.of_wrong_type(name, given_parameters(node)[name]) from None
     except InvalidParameterValueException:
-        raise entry.out_of_range(name, _given(node, name)) from None
+        raise entry.out_of_range(name, given_parameters(node)[name]) from None
     entry.check_choice(name, value)
     return value
 
 
-def _given(node: Node, name: str) -> Any:
-    return node._parameter_overrides[name].value  # rclpy tells it nowhere else
+def given_parameters(node: Node) -> dict[str, Any]:
+    """Return the values that a node was started with, by the names of their parameters."""
+    given = node._parameter_overrides  # rclpy tells it nowhere else
+    return {name: parameter.value for name, parameter in given.items()}
 
 
 def _refuse_unknown(node: Node, table: Mapping[str, Parameter]) -> None:
     """Refuse a misspelt parameter, which ROS would pass over in silence."""
-    for name in node._parameter_overrides:  # rclpy tells it nowhere else
+    for name in given_parameters(node):
         ours = name in table
         of_ros = name.startswith("qos_overrides.") or node.has_parameter(name)
         if not ours and not of_ros:

@@ -30,7 +30,7 @@ from sailenv_ros.ros.nodes.diagnostics import AgentCounts, FrameCounter
 from sailenv_ros.ros.nodes.disparity_topics import DisparityTopics
 from sailenv_ros.ros.nodes.forward_motion_topics import ForwardMotionTopics
 from sailenv_ros.ros.nodes.object_topics import ObjectTopics
-from sailenv_ros.ros.nodes.qos import frame_qos, no_events, overridable
+from sailenv_ros.ros.nodes.qos import frame_qos, no_events, overriding
 from sailenv_ros.ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import FrameStream, Simulation
 from sailenv_ros.types.agents import AgentPose, AgentSpec
@@ -260,12 +260,13 @@ class AgentPublisher:
         return tuple(sent)
 
     def _publisher(self, kind: type, topic: str) -> Publisher:
+        name = f"{self._spec.name}/{topic}"
         return self._node.create_publisher(
             kind,
-            f"{self._spec.name}/{topic}",
+            name,
             frame_qos(),
             event_callbacks=no_events(),
-            qos_overriding_options=overridable(),
+            qos_overriding_options=overriding(self._node, name),
         )
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from sailenv_ros.recording.topics import OfferedQos
+from sailenv_ros.ros.nodes.parameters import given_parameters
 
 __all__ = [
     "clock_qos",
@@ -15,7 +17,7 @@ __all__ = [
     "frame_qos",
     "latched_qos",
     "no_events",
-    "overridable",
+    "overriding",
     "recorded_qos",
 ]
 
@@ -57,9 +59,18 @@ def recorded_qos(offered: OfferedQos, depth: int) -> QoSProfile:
     )
 
 
-def overridable() -> QoSOverridingOptions:
-    """Let users set history, depth and reliability by ``qos_overrides`` parameters."""
-    return QoSOverridingOptions.with_default_policies()
+def overriding(node: Node, topic: str) -> QoSOverridingOptions | None:
+    """Let users set history, depth and reliability of a topic by ``qos_overrides`` parameters.
+
+    Returns
+    -------
+    options : QoSOverridingOptions or None
+        None where the node was started without such a parameter: rclpy declares three for each
+        topic and never takes them back, so each agent that comes and goes would leave some behind.
+    """
+    prefix = f"qos_overrides.{node.resolve_topic_name(topic)}."
+    given = any(name.startswith(prefix) for name in given_parameters(node))
+    return QoSOverridingOptions.with_default_policies() if given else None
 
 
 def no_events() -> PublisherEventCallbacks:
