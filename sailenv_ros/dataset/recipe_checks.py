@@ -10,18 +10,26 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from pydantic import TypeAdapter, ValidationError
+
 from sailenv_ros.dataset.formats.formats import FORMATS, format_class
 from sailenv_ros.dataset.recipe import DatasetRecipe
 from sailenv_ros.dataset.recipe_choices import choices_of
 from sailenv_ros.dataset.recipe_scenes import RecipeScenes
+from sailenv_ros.dataset.scene_names import SceneNames
 from sailenv_ros.errors import MissingPackage
 from sailenv_ros.extras import need
 from sailenv_ros.scene.messages import shown, suggestion
 from sailenv_ros.scene.randomise.random_rules import drawn_names
+from sailenv_ros.scene.randomise.randomisation import MOST_ADDED
 from sailenv_ros.scene.randomise.selectors import is_meant, selectors_in
+from sailenv_ros.scene.randomise.thing_table import RandomThing
 from sailenv_ros.scene.scene_diagnostics import Diagnostic, name_diagnostics
+from sailenv_ros.simulation.scenes import SceneLibrary
 
 __all__ = ["recipe_errors"]
+
+_THING = TypeAdapter[RandomThing](RandomThing)
 
 
 def recipe_errors(
@@ -122,10 +130,14 @@ def _agents(data: Mapping[str, Any], scenes: RecipeScenes) -> Iterator[Diagnosti
 def _choices(data: Mapping[str, Any], scenes: RecipeScenes) -> Iterator[Diagnostic]:
     """Yield which choices of objects meet nothing in any scene.
 
-    Scenes are looked at until everything has met something. While a scene cannot be read, nothing
-    is known of what it has.
+    Scenes are looked at until everything has met something; what the recipe itself may add to them
+    counts as theirs. While a scene cannot be read, nothing is known of what it has.
     """
     waiting = list(choices_of(data))
+    for names in _added_names(data, scenes.library):
+        if not any(one.kind == "camera" for one in waiting):
+            break
+        waiting = [one for one in waiting if one.kind != "camera" or not one.meets(names)]
     looked: list[str] = []
     known: dict[str, set[str]] = {}
     for scene, names in scenes.names(data) if waiting and scenes.all_read else ():
@@ -143,6 +155,18 @@ def _choices(data: Mapping[str, Any], scenes: RecipeScenes) -> Iterator[Diagnost
         sought = str(one.selectors[0]).removeprefix("category ")
         near = suggestion(sought, sorted(known.get(one.kind, set()) - {""}), listing="there are")
         yield Diagnostic(one.loc, f"meets nothing in {where} ({one.label}); {near}")
+
+
+def _added_names(data: Mapping[str, Any], library: SceneLibrary) -> Iterator[SceneNames]:
+    """Yield what cameras may look at that comes to a scene at random, once for each asset."""
+    for _, entry in _entries(data, "randomise"):
+        try:
+            thing = _THING.validate_python(entry)
+        except ValidationError:
+            continue  # told where the values are checked
+        names = [f"{thing.name} {number}" for number in range(1, MOST_ADDED + 1)]
+        for asset in thing.may_add():
+            yield SceneNames({"camera": dict.fromkeys(names, library.knowledge.category_of(asset))})
 
 
 def _entries(data: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:

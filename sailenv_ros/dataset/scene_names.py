@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from sailenv_ros.assets.material_library import material_names
 from sailenv_ros.scene.randomise.random_rules import selectable
@@ -53,6 +53,10 @@ class SceneNames:
             for part in asset.parts:
                 seen[f"{entry.name}{PART_MARK}{part.name}"] = part.category
         return cls({**kinds, "camera": seen}, tuple(one.name for one in spec.agents), materials)
+
+    def with_seen(self, seen: Mapping[str, str]) -> SceneNames:
+        """Return them with more that cameras may look at: categories by names."""
+        return replace(self, by_kind={**self.by_kind, "camera": {**self.by_kind["camera"], **seen}})
 
     def meant(self, kind: str, selector: Selector, part: str = ALL_PARTS) -> list[str]:
         """Return what a selector of an entry of that kind means, of that with a material `part`."""

@@ -18,19 +18,14 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.authoring.room_rules.names import PREFIX
-from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.camera_tracks import Track, place_cameras, track_of, turning
 from sailenv_ros.dataset.findings import Findings
 from sailenv_ros.dataset.frame_sink import FrameSink
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary, summaries_of_files
 from sailenv_ros.dataset.recipe_cameras import AgentCamera, AnyCamera, MountedCamera, RuleCamera
-from sailenv_ros.dataset.recipe_choices import (
-    AGENT_PREFIX,
-    choices_of,
-    fitting_settings,
-    fitting_things,
-)
+from sailenv_ros.dataset.recipe_choices import AGENT_PREFIX, choices_of, fitting_things
+from sailenv_ros.dataset.rule_views import aims_at_movers, present_names, rule_views
 from sailenv_ros.dataset.scene_names import SceneNames
 from sailenv_ros.dataset.shard_plan import Clip, SceneSource, ShardPlan, clip_groups
 from sailenv_ros.dataset.shard_writer import ShardWriter
@@ -48,7 +43,6 @@ from sailenv_ros.render.scene.room_reflections import Share
 from sailenv_ros.simulation.finished_light import bake_missing
 from sailenv_ros.simulation.scene_facts import scene_facts
 from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.simulation.script.rule_places import look_lens
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.space.free_space import named_generator
 from sailenv_ros.system.temporary_folders import temporary_folder
@@ -176,15 +170,20 @@ class ShardMaker:
         with self._scene(group[0]) as core:
             if recipe.clip.settle:
                 core.step(round(recipe.clip.settle * STEPS_PER_SECOND))
-            self._note_missed_targets(core, group[0].scene)
+            names = present_names(core, self._library)
+            self._note_missed_targets(names, group[0].scene)
+            ruled = [one for one in recipe.cameras if isinstance(one, RuleCamera)]
+            late = [one for one in ruled if aims_at_movers(one, core, names)]
             chosen = {
-                one.name: self._chosen(one, group, core)
-                for one in recipe.cameras
-                if isinstance(one, RuleCamera)
+                one.name: rule_views(one, group, core, names, recipe.seed)
+                for one in ruled
+                if one not in late
             }
             for clip in group:
                 if clip is not group[0]:
                     core.step(round(recipe.clip.gap * STEPS_PER_SECOND) or 1)
+                for one in late:
+                    chosen[one.name] = rule_views(one, (clip,), core, names, recipe.seed)
                 try:
                     tracks = {
                         one.name: self._track(one, clip, core, chosen.get(one.name, []))
@@ -235,24 +234,6 @@ class ShardMaker:
         if not self._recipe.amodal:
             changes["draw_amodal"] = None
         return replace(frame, **changes)
-
-    def _chosen(
-        self, camera: RuleCamera, group: tuple[Clip, ...], core: SynchronousSimulation
-    ) -> list[Pose]:
-        """Return the places that a rule finds for the clips of a group, perhaps fewer."""
-        random = named_generator(self._recipe.seed, "rule", camera.name, str(group[0].number))
-        names = self._names(core)
-        settings = fitting_settings(camera.settings, names)
-        if settings is None:
-            return []
-        found = sample_cameras(
-            core.view_scene(look_lens(camera.intrinsics)),
-            camera.rule,
-            len(group),
-            seed=int(random.integers(2**63)),
-            settings=settings,
-        )
-        return [one.pose for one in found]
 
     def _track(
         self, camera: AnyCamera, clip: Clip, core: SynchronousSimulation, chosen: list[Pose]
@@ -308,7 +289,8 @@ class ShardMaker:
                 bake_missing(core.world)
             if self._recipe.randomise:
                 seed = int(random.integers(2**31))
-                things, missed = fitting_things(self._recipe, self._names(core))
+                names = present_names(core, self._library)
+                things, missed = fitting_things(self._recipe, names)
                 for label in missed:
                     self._findings.add(f"nothing was met by `{label}`", first.scene)
                 if things:
@@ -319,15 +301,10 @@ class ShardMaker:
         finally:
             core.close()
 
-    def _note_missed_targets(self, core: SynchronousSimulation, scene: SceneSource) -> None:
-        names = self._names(core)
+    def _note_missed_targets(self, names: SceneNames, scene: SceneSource) -> None:
         for choice in choices_of({"cameras": self._camera_data}):
             if not choice.meets(names):
                 self._findings.add(f"nothing was met by `{choice.label}`", scene)
-
-    def _names(self, core: SynchronousSimulation) -> SceneNames:
-        assert core.world.described is not None
-        return SceneNames.of(core.world.described, self._library)
 
     def _path(self, scene: SceneSource) -> Path:
         """Return the file of a scene; a generated one is made now."""

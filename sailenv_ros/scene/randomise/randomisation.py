@@ -18,6 +18,7 @@ from sailenv_ros.scene.randomise.selectors import Selector, is_meant
 
 __all__ = [
     "EVERY",
+    "MOST_ADDED",
     "Pick",
     "RandomTargets",
     "Randomisation",
@@ -34,6 +35,9 @@ Pick: TypeAlias = Callable[[str, str, Draw], Any]
 """``pick(target, key, draw)`` returns a value; each target and key has a generator of its own."""
 
 EVERY = ("epoch", "frame")
+
+MOST_ADDED = 200
+"""How many objects one entry may bring; each is named by the entry and its number, from 1."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,6 +91,10 @@ class Randomisation(SceneModel):
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return what is drawn for all its targets."""
         raise NotImplementedError
+
+    def may_add(self) -> tuple[str, ...]:
+        """Return the names of the assets that may come to the scene by it."""
+        return ()
 
     def draws(self, *besides: str) -> dict[str, Draw]:
         """Return what is to be drawn, by its keys."""

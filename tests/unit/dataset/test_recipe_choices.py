@@ -106,6 +106,33 @@ def test_rules_look_at_what_there_is(tmp_path: Path) -> None:
     assert made.findings["nothing was met by `camera camera: t?o`"] == {"balls.yaml": 2}
 
 
+def test_rules_look_at_what_a_recipe_brings_wherever_it_goes(tmp_path: Path) -> None:
+    """A ball that comes at random and circles is seen whole in each clip, not in the first alone."""
+    ball = {
+        "name": "ball", "type": "spawn", "assets": ["sphere"], "scale": 0.4, "gravity": False,
+        "within": [[2, 0, 0.5], [2, 0, 0.5]],
+        "behaviours": [{"type": "linear_waypoints", "total_time": 6, "loop": True, "waypoints": [
+            {"position": [2, 0, 0.5]}, {"position": [-2, 0, 0.5]}, {"position": [0, -2, 0.5]}]}],
+    }  # fmt: skip
+    look = {
+        "type": "rule", "rule": "object_view", "settings": {"categories": ["sphere"]},
+        "width": 64, "height": 48,
+    }  # fmt: skip
+    path = recipe(
+        tmp_path, scenes=[{"scene": "cubes.yaml"}], randomise=[ball], cameras=[look],
+        clips={"train": 6}, clip={"per_scene": 6, "gap": 2.0},
+    )  # fmt: skip
+    made = make_dataset(load_job(path), tmp_path / "made", engine_of(1, None))
+    assert made.frames == 6
+    with open_dataset(tmp_path / "made") as frames:
+        seen = [float((one.frame["instance"] == _id_of(one, "ball 1")).mean()) for one in frames]
+    assert min(seen) >= 0.02  # the least that the rule asks for
+
+
+def _id_of(frame: Any, name: str) -> int:
+    return next(int(one["id"]) for one in frame.objects if one["name"] == name)
+
+
 def test_a_scene_file_chooses_by_category(tmp_path: Path) -> None:
     """It is checked with the file, and written as it was read."""
     entry = {"name": "a", "type": "object", "of": {"category": ["couch", "bed"]}, "turn": 3}

@@ -12,6 +12,7 @@ from sailenv_ros.scene.fields import LinearColour, Position, Rule
 from sailenv_ros.scene.randomise.drawn import Draw, Drawn
 from sailenv_ros.scene.randomise.random_rules import box_in_order
 from sailenv_ros.scene.randomise.randomisation import (
+    MOST_ADDED,
     EpochRandomisation,
     Pick,
     RandomTargets,
@@ -21,7 +22,7 @@ from sailenv_ros.scene.randomise.randomisation import (
 __all__ = ["RandomDistractors"]
 
 _Asset = Annotated[str, Text(r"[^\x00-\x1f]{1,100}", "the name of an asset")]
-_Count = Annotated[int, Number(least=0, most=200, whole=True)]
+_Count = Annotated[int, Number(least=0, most=MOST_ADDED, whole=True)]
 _Factor = Annotated[float, Number(least=1e-3, most=1e3)]
 _Share = Annotated[float, Number(least=0.0, most=1.0)]
 
@@ -45,6 +46,10 @@ class RandomDistractors(EpochRandomisation):
     colour: Annotated[Draw, Drawn(LinearColour)] | None = optional(
         "paints each of them; drawn in linear numbers"
     )
+
+    def may_add(self) -> tuple[str, ...]:
+        """Return the names of the assets that may come to the scene by it."""
+        return self.assets
 
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return entries of objects as a scene file has them."""

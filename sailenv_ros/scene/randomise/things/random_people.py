@@ -55,6 +55,10 @@ class RandomPeople(EpochRandomisation):
         "about the vertical; any if left out [deg]"
     )
 
+    def may_add(self) -> tuple[str, ...]:
+        """Return the names of the assets that may come to the scene by it."""
+        return tuple(map(self._worn, self.assets))
+
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return entries of objects as a scene file has them; see `FLOOR`."""
         which = Drawn(_Asset).check({"choice": list(self.assets)})
@@ -67,7 +71,7 @@ class RandomPeople(EpochRandomisation):
             turn = pick(name, "turn", self.turn or _ANY_TURN)
             entry: dict[str, Any] = {
                 "name": name,
-                "asset": f"{asset}{IN_PARTS}" if self.in_parts else asset,
+                "asset": self._worn(asset),
                 FLOOR: {"seed": pick(name, FLOOR, seed), "height": 0.0, "turn": turn},
             }
             behaviour = ACTIVITIES[str(pick(name, "activity", does))]
@@ -75,3 +79,6 @@ class RandomPeople(EpochRandomisation):
                 entry["behaviours"] = [{"type": behaviour}]
             added.append(entry)
         return {"added": added}
+
+    def _worn(self, asset: str) -> str:
+        return f"{asset}{IN_PARTS}" if self.in_parts else asset

@@ -78,6 +78,10 @@ class RandomSpawn(EpochRandomisation):
         default=(), max_length=16, description="their motion by themselves"
     )
 
+    def may_add(self) -> tuple[str, ...]:
+        """Return the names of the assets that may come to the scene by it."""
+        return self.assets
+
     def values(self, targets: RandomTargets, pick: Pick) -> Values:
         """Return entries of objects as a scene file has them; see `FLOOR`."""
         which = Drawn(_Asset).check({"choice": list(self.assets)})
