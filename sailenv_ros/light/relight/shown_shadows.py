@@ -99,9 +99,9 @@ class ShownShadows:
         self._seen = [place for place, _ in things.values()]
         self._places = _more(self._places, things)
         known = scene.found.shadows.get(self._places) if self._places else None
-        if known is not None:
-            still = self._still = known.copy()
-            return still, True
+        if isinstance(known, ObjectShadows):
+            self._still = known.copy()
+            return self._still, True
         if still is None:
             lighting = ObjectLighting(scene, (), self._points)
             still = self._still = ObjectShadows(lighting, moved_surfaces(scene, ()))
