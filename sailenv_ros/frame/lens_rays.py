@@ -96,7 +96,7 @@ def ray_lengths(lens: CameraIntrinsics) -> NDArray[np.float64]:
 
     nan where the lens does not see that deep.
     """
-    lengths = np.linalg.norm(lens.rays(), axis=-1)
+    lengths: NDArray[np.float64] = np.linalg.norm(lens.rays(), axis=-1)
     lengths.flags.writeable = False
     return lengths
 
