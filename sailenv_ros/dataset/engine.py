@@ -12,7 +12,7 @@ from typing import Protocol
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.manifest import ShardSummary
 
-__all__ = ["ATTEMPTS", "Engine", "OnFrames", "interleave_shards"]
+__all__ = ["ATTEMPTS", "Engine", "OnFrames", "interleave_shards", "neighbour_runs"]
 
 ATTEMPTS = 3
 """Number of attempts at a shard whose worker dies."""
@@ -30,11 +30,20 @@ class Engine(Protocol):
         """Yield the summary of each shard as soon as it is in the data set."""
 
 
-def interleave_shards(shards: Sequence[int], workers: int) -> list[int]:
-    """Return shards in an order in which each of so many workers gets neighbours.
+def neighbour_runs(shards: Sequence[int], workers: int) -> list[Sequence[int]]:
+    """Return shards in runs of neighbours, one for each of so many workers; none is empty.
 
-    Neighbours are often of the same scene, which a worker has loaded then. Who is quick takes more.
+    Neighbours are often of the same scene, which a worker has loaded then.
     """
     length = -(-len(shards) // workers)
-    runs = [shards[begin : begin + length] for begin in range(0, len(shards), length or 1)]
+    return [shards[begin : begin + length] for begin in range(0, len(shards), length or 1)]
+
+
+def interleave_shards(shards: Sequence[int], workers: int) -> list[int]:
+    """Return shards in an order in which each of so many workers, taking turns, gets neighbours.
+
+    Who is quick takes more.
+    """
+    runs = neighbour_runs(shards, workers)
+    length = max(map(len, runs), default=0)
     return [run[place] for place in range(length) for run in runs if place < len(run)]

@@ -1,7 +1,7 @@
 """Pieces of a work in several processes: numbers in, results out, in the order of their ends.
 
-A piece whose worker dies is made by another one, up to `ATTEMPTS` times. Errors of the work itself
-end it.
+Each worker makes a run of neighbours, and then helps with the longest that is left. A piece whose
+worker dies is made by another one, up to `ATTEMPTS` times. Errors of the work itself end it.
 """
 
 from __future__ import annotations
@@ -15,9 +15,10 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import get_context
+from multiprocessing.context import SpawnContext
 from typing import Any, Generic, TypeVar
 
-from sailenv_ros.dataset.engine import ATTEMPTS, OnFrames, interleave_shards
+from sailenv_ros.dataset.engine import ATTEMPTS, OnFrames, neighbour_runs
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
@@ -64,51 +65,59 @@ class WorkerPool(Generic[Made]):
         threads = max(1, (os.cpu_count() or 1) // self.workers)
         arguments = (self.maker, self.arguments, frames, threads, os.getpid())
         attempts: Counter[int] = Counter()
-        waiting = deque(interleave_shards(numbers, self.workers))
-        while waiting:
-            pool = ProcessPoolExecutor(
-                min(self.workers, len(waiting)), context, _begin_worker, arguments
-            )
-            running: dict[Future[Made], int] = {}
-            try:
-                yield from self._run(pool, waiting, running, frames, on_frames)
+        runs = [deque(run) for run in neighbour_runs(numbers, self.workers)]
+        pools = [_pool(context, arguments) for _ in runs]
+        running: dict[Future[Made], tuple[int, int]] = {}
+        try:
+            while any(runs) or running:
+                busy = {place for place, _ in running.values()}
+                for place in (one for one in range(len(runs)) if one not in busy and any(runs)):
+                    number = _next(runs, place)
+                    try:
+                        running[pools[place].submit(_make, number)] = place, number
+                    except BrokenProcessPool:  # killed while it had nothing to do
+                        runs[place].appendleft(number)
+                        pools[place] = _renewed(pools[place], context, arguments)
+                done, _ = wait(running, LOOK_INTERVAL_S, FIRST_COMPLETED)
+                on_frames(frames.value)
+                for future in sorted(done, key=lambda one: running[one]):
+                    place, number = running.pop(future)
+                    try:
+                        made = future.result()
+                    except BrokenProcessPool:
+                        attempts[number] += 1
+                        if attempts[number] >= ATTEMPTS:
+                            raise RecordingError(
+                                f"the worker of {self.piece} {number} was killed {ATTEMPTS} times; "
+                                "it may need more memory than there is: use fewer workers"
+                            ) from None
+                        runs[place].appendleft(number)
+                        pools[place] = _renewed(pools[place], context, arguments)
+                    else:
+                        yield made
+            for pool in pools:
                 pool.shutdown()
-            except BrokenProcessPool:
-                # All that were running are tried again, by new workers.
-                for number in sorted(running.values(), reverse=True):
-                    attempts[number] += 1
-                    if attempts[number] >= ATTEMPTS:
-                        raise RecordingError(
-                            f"the worker of {self.piece} {number} was killed {ATTEMPTS} times; "
-                            "it may need more memory than there is: use fewer workers"
-                        ) from None
-                    waiting.appendleft(number)
-            finally:
+        finally:
+            for pool in pools:
                 _end(pool)
 
-    def _run(
-        self,
-        pool: ProcessPoolExecutor,
-        waiting: deque[int],
-        running: dict[Future[Made], int],
-        frames: Any,
-        on_frames: OnFrames,
-    ) -> Iterator[Made]:
-        while waiting or running:
-            # One more than there are workers, so that none of them waits for us.
-            while waiting and len(running) <= self.workers:
-                number = waiting.popleft()
-                try:
-                    running[pool.submit(_make, number)] = number
-                except BrokenProcessPool:
-                    waiting.appendleft(number)
-                    raise
-            done, _ = wait(running, LOOK_INTERVAL_S, FIRST_COMPLETED)
-            on_frames(frames.value)
-            for future in sorted(done, key=lambda one: running[one]):
-                made = future.result()
-                del running[future]
-                yield made
+
+def _next(runs: Sequence[deque[int]], place: int) -> int:
+    """Take the next piece of a worker: of its own run, else the last one of the longest."""
+    return runs[place].popleft() if runs[place] else max(runs, key=len).pop()
+
+
+def _pool(context: SpawnContext, arguments: tuple[Any, ...]) -> ProcessPoolExecutor:
+    """Return a worker: a pool of one process, so that a piece goes to the one that it is for."""
+    return ProcessPoolExecutor(1, context, _begin_worker, arguments)
+
+
+def _renewed(
+    pool: ProcessPoolExecutor, context: SpawnContext, arguments: tuple[Any, ...]
+) -> ProcessPoolExecutor:
+    """Return a worker in the place of one that was killed."""
+    _end(pool)
+    return _pool(context, arguments)
 
 
 _made_by: Callable[[int], Any] | None = None

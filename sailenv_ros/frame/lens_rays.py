@@ -22,6 +22,7 @@ __all__ = [
     "bent_lenses",
     "depth_shares",
     "ranges_of_depths",
+    "ray_lengths",
     "rays_of_half_pixels",
     "reach_lines",
     "reach_of",
@@ -87,6 +88,17 @@ def unit_rays(lens: CameraIntrinsics) -> NDArray[np.float64]:
     rays = np.ascontiguousarray(lens.unit_rays())
     rays.flags.writeable = False
     return rays
+
+
+@lru_cache(maxsize=8)
+def ray_lengths(lens: CameraIntrinsics) -> NDArray[np.float64]:
+    """Return (H, W) float64 read-only: how long rays are to where they are 1 m deep [m].
+
+    nan where the lens does not see that deep.
+    """
+    lengths: NDArray[np.float64] = np.linalg.norm(lens.rays(), axis=-1)
+    lengths.flags.writeable = False
+    return lengths
 
 
 def rays_of_half_pixels(lens: CameraIntrinsics) -> NDArray[np.float64]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
+from sailenv_ros.frame.lens_rays import ray_lengths
 from sailenv_ros.types.camera import CameraIntrinsics
 
 __all__ = ["undistorted"]
@@ -64,7 +65,7 @@ def undistorted(frame: Frame) -> Frame:
             depth = np.where(seen & np.isfinite(within), within, depth)
         views["depth"] = depth.astype(np.float32)
         if "range" in frame.views:
-            views["range"] = (depth * np.linalg.norm(straight.rays(), axis=-1)).astype(np.float32)
+            views["range"] = (depth * ray_lengths(straight)).astype(np.float32)
     camera = replace(frame.camera, intrinsics=straight)
     return replace(frame, camera=camera, views=views, draw_amodal=None)
 

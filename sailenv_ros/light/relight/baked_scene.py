@@ -17,6 +17,7 @@ from sailenv_ros.light.bake.lamp_glow import glows_of
 from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.relight.baked_texels import BakedTexels, baked_texels, patch_means
+from sailenv_ros.light.relight.found_light import FoundLight
 from sailenv_ros.light.relight.ray_shapes import Shape, shape_of
 from sailenv_ros.rays.light_rays import glass_of
 from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
@@ -101,10 +102,12 @@ class BakedScene:
     panes : tuple
         Glass of what stands still; see `glass_of`.
     sky : (H, 2 H, 3) float32
+    found : FoundLight
+        For others who show this scene.
     """
 
     def __init__(self, baked: BakedLight, contents: SceneContents, threads: int) -> None:
-        self.baked = baked
+        self.baked, self.found = baked, FoundLight()
         self.drawn = {
             drawn.instance.id: drawn
             for drawn in contents.instances

@@ -14,6 +14,7 @@ import numpy as np
 
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.found_light import FoundLight
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import SceneContents
 
@@ -47,6 +48,8 @@ class BakedSceneStore:
             scene = copy.copy(kept)
             scene.baked = baked
             scene.sky = np.ascontiguousarray(sky_picture(contents.environment), np.float32)
+            if not np.array_equal(scene.sky, kept.sky):
+                scene.found = FoundLight()
             return scene
         scene = BakedScene(baked, contents, threads)
         with self._lock:

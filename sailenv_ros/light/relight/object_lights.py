@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.found_light import KnownLight
 from sailenv_ros.light.relight.object_light import (
     ObjectLighting,
     PlacedObject,
@@ -37,10 +37,6 @@ FAR_M = 1.0
 MOST_MOVING = 12
 """Of the objects that move so many get light of their own in each snapshot, those with the lowest
 ids; others have that of the probes."""
-
-
-_Known: TypeAlias = tuple[tuple[object, ...], ObjectLight]
-"""Light on an object, after all that it depends on."""
 
 
 def can_be_lit(drawn: DrawnInstance) -> bool:
@@ -95,8 +91,8 @@ class ObjectLights:
         self._of: tuple[object, ...] = ()
         self._seen: tuple[object, tuple[bytes, bytes]] = (None, (b"", b""))
         self._lightings: dict[tuple[object, ...], ObjectLighting] = {}
-        self._still: dict[int, _Known] = {}
-        self._known: dict[int, _Known] = {}
+        self._still: dict[int, KnownLight] = {}
+        self._known: dict[int, KnownLight] = {}
         self._light: Mapping[int, ObjectLight] = {}
 
     def update(
@@ -131,13 +127,13 @@ class ObjectLights:
         self.things = things = [_steady(thing) for thing in movable_objects(snapshot)]
         if of != self._of:
             if self._of[:1] != (scene,):
-                self._lightings, self._still = {}, {}
+                self._lightings, self._still = {}, scene.found.objects
             self._lightings = {key: one for key, one in self._lightings.items() if not key}
             self._of, self._known = of, {}
         chosen = _chosen(things)
         near = _near(things)
         affected = near_changes(scene, things, changes, FAR_M) if rough else frozenset()
-        known: dict[int, _Known] = {}
+        known: dict[int, KnownLight] = {}
         asked = []
         for place in chosen:
             thing = things[place]

@@ -7,6 +7,7 @@ the main light gives straight is left as it is: its shadow map has what can move
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -114,6 +115,12 @@ class ObjectShadows:
         self._find(self._may_change([*left, *taken]))
         return True
 
+    def copy(self) -> ObjectShadows:
+        """Return the same shadows, which change apart from these."""
+        same = copy.copy(self)
+        same._patches, same._maps = self._patches.copy(), self._maps.copy()
+        return same
+
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Return what was found, for `take`."""
         found = np.flatnonzero(self._patches.state).astype(np.int32)
@@ -168,7 +175,7 @@ class ObjectShadows:
         if not self._things:
             return light
         after = self._maps.on(
-            light, self._maps_of(light), self._patches, self._texels, self._at_texels, self._threads
+            self._maps_of(light), self._patches, self._texels, self._at_texels, self._threads
         )
         bounced, direct = after[: len(light.layers)], after[len(light.layers) :]
         of_layer = dict(zip(self._records, direct, strict=True))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -95,8 +96,14 @@ class ShadowMaps:
 
     def __init__(self, surfaces: MovedSurfaces, sharp: int) -> None:
         self._surfaces, self._sharp = surfaces, sharp
-        self._known: tuple[object, Maps] | None = None
+        self._known: tuple[Maps, Maps] | None = None
         self._forgotten = np.zeros(len(surfaces.wanted), bool)
+
+    def copy(self) -> ShadowMaps:
+        """Return the same maps, which are written apart from these."""
+        same = copy.copy(self)
+        same._forgotten = self._forgotten.copy()
+        return same
 
     def forget(self, patches: NDArray[np.bool_]) -> None:
         """Have what was found at (P,) patches written again."""
@@ -104,7 +111,6 @@ class ShadowMaps:
 
     def on(
         self,
-        light: object,
         maps: Maps,
         at_patches: PointChanges,
         texels: NDArray[np.intp],
@@ -115,10 +121,8 @@ class ShadowMaps:
 
         Parameters
         ----------
-        light : object
-            Tells the lights apart.
         maps : sequence of (side, side, 3) or (side, side) float16
-            C channels in all.
+            C channels in all; nobody writes to them.
         at_patches : PointChanges
             Of all patches; where texels know better they are inside.
         texels : (K,) intp
@@ -127,7 +131,9 @@ class ShadowMaps:
         threads : int
         """
         surfaces, scene = self._surfaces, self._surfaces.scene
-        kept = self._known[1] if self._known is not None and self._known[0] is light else None
+        kept = self._kept(maps)
+        if kept is not None and not self._forgotten.any():
+            return kept
         after = [one.copy() for one in (maps if kept is None else kept)]
         again = np.ones(len(scene.places), bool) if kept is None else self._written_again()
         own = np.flatnonzero(again)
@@ -142,9 +148,17 @@ class ShadowMaps:
         spread_change(mapped, patches, state, change, after, threads=threads)
         if len(texels):
             self._put_texels(maps, after, texels, at_texels, again[texels], threads)
-        self._known = light, after
+        self._known = maps, after
         self._forgotten[:] = False
         return after
+
+    def _kept(self, maps: Maps) -> Maps | None:
+        """Return what was returned for the same maps, if those were the last."""
+        if self._known is None:
+            return None
+        before, after = self._known
+        same = all(one is other for one, other in zip(before, maps, strict=True))
+        return after if same else None
 
     def _written_again(self) -> NDArray[np.bool_]:
         """Return (N,) bool: the texels into which anything reaches from patches forgotten."""

@@ -12,6 +12,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
+from sailenv_ros.light.relight.found_light import MOST
 from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
 from sailenv_ros.light.relight.object_light import (
     ObjectLighting,
@@ -43,7 +44,9 @@ class ShownShadows:
 
     def __init__(self, scene: BakedScene, points: SurfacePoints) -> None:
         self._scene, self._points = scene, points
-        self._still = ObjectShadows(ObjectLighting(scene, (), points), moved_surfaces(scene, ()))
+        self._still: ObjectShadows | None = None
+        self._seen: list[object] = []
+        self._places: tuple[object, ...] | None = ()
         self._changed: tuple[tuple[object, ...], ObjectShadows] | None = None
         self._shown: tuple[BakedLight, BakedLight] | None = None
 
@@ -68,25 +71,43 @@ class ShownShadows:
         threads : int
             The result does not depend on it.
         """
-        shadows = self._still
-        moved = self._follow({thing.id: (thing.place, thing) for thing in things}, threads)
+        shadows, moved = self._follow({one.id: (one.place, one) for one in things}, threads)
         key = tuple(change.key for change in changes)
         if moved or (self._changed is not None and self._changed[0] != key):
             self._changed, self._shown = None, None
         if changes:
             if self._changed is None:
-                self._changed = key, self._with_changes(changes, things)
+                self._changed = key, self._with_changes(shadows, changes, things)
                 self._shown = None
             shadows = self._changed[1]
         if self._shown is None or self._shown[0] is not light:
             self._shown = light, shadows.on(light)
+            if self._places and not changes and self._places not in self._scene.found.shadows:
+                self._scene.found.keep(self._places, shadows)
         return self._shown[1]
 
-    def _follow(self, things: Mapping[int, tuple[object, PlacedObject]], threads: int) -> bool:
-        """Find shadows where things are; the first ones are kept on disk with the room's light."""
-        still, checksum = self._still, self._scene.baked.checksum
+    def _follow(
+        self, things: Mapping[int, tuple[object, PlacedObject]], threads: int
+    ) -> tuple[ObjectShadows, bool]:
+        """Find shadows where things are; return them without changes, and whether they are others.
+
+        The first ones are kept with the scene, and on disk with the room's light.
+        """
+        scene, still = self._scene, self._still
+        if still is not None and [place for place, _ in things.values()] == self._seen:
+            return still, False
+        self._seen = [place for place, _ in things.values()]
+        self._places = _more(self._places, things)
+        known = scene.found.shadows.get(self._places) if self._places else None
+        if isinstance(known, ObjectShadows):
+            self._still = known.copy()
+            return self._still, True
+        if still is None:
+            lighting = ObjectLighting(scene, (), self._points)
+            still = self._still = ObjectShadows(lighting, moved_surfaces(scene, ()))
+        checksum = scene.baked.checksum
         if still.casters or not things or not checksum:
-            return still.update(things, threads)
+            return still, still.update(things, threads)
 
         def find() -> Mapping[str, NDArray[Any]]:
             still.update(things, threads)
@@ -100,16 +121,25 @@ class ShownShadows:
             for _, thing in things.values()
         ]
         code = code_digest("light/bake", "light/relight", "native", "rays", "types")
-        key = checksum, native_library().digest, *self._scene.drawn, *told
+        key = checksum, native_library().digest, *scene.drawn, *told
         found = cached_arrays("shadows", key, find, code=code)
         if not still.casters:
             still.take(things, found, threads)
-        return True
+        return still, True
 
     def _with_changes(
-        self, changes: Sequence[Change], things: Sequence[PlacedObject]
+        self, still: ObjectShadows, changes: Sequence[Change], things: Sequence[PlacedObject]
     ) -> ObjectShadows:
         scene = self._scene
         near = near_changes(scene, things, changes, NEAR_M)
         lighting = ObjectLighting(scene, changes, self._points)
-        return self._still.with_changes(lighting, moved_surfaces(scene, changes), near)
+        return still.with_changes(lighting, moved_surfaces(scene, changes), near)
+
+
+def _more(
+    places: tuple[object, ...] | None, things: Mapping[int, tuple[object, PlacedObject]]
+) -> tuple[object, ...] | None:
+    """Return the places of objects so far and now; None where there are too many to be kept."""
+    if places is None or len(places) == MOST:
+        return None
+    return *places, tuple(place for place, _ in things.values())

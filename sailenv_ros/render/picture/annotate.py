@@ -16,7 +16,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import bent_lenses, depth_shares, reach_view, tells_depth
+from sailenv_ros.frame.lens_rays import (
+    bent_lenses,
+    depth_shares,
+    ray_lengths,
+    reach_view,
+    tells_depth,
+)
 from sailenv_ros.frame.motion.deforming_motion import object_points, surface_motions
 from sailenv_ros.frame.motion.rigid_motion import (
     OCCLUSION_TOLERANCE,
@@ -96,9 +102,8 @@ def annotate(
     if "range" in wanted and lens.is_parallel:
         arrays["range"][:] = arrays["depth"]
     elif "range" in wanted and straight:
-        arrays["range"] = (arrays["depth"] * np.linalg.norm(lens.rays(), axis=-1)).astype(
-            np.float32
-        )
+        # In double precision, rounded at the end.
+        np.multiply(arrays["depth"], ray_lengths(lens), out=arrays["range"], casting="same_kind")
     if "lens_valid" in wanted:
         arrays["lens_valid"][:] = True if straight else ~np.isnan(depth_shares(lens))
     now = _poses_of(Observation(snapshot=snapshot, camera=camera, rows=rows))

@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import depth_shares
+from sailenv_ros.frame.lens_rays import depth_shares, ray_lengths
 from sailenv_ros.native.lens_light import scale_light, weigh_light
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.picture_settings import PictureSettings
@@ -118,7 +118,7 @@ def _falloff(lens: CameraIntrinsics, strength: float) -> NDArray[np.float32]:
     sees to the side no light arrives.
     """
     if lens.is_pinhole:
-        cosine = 1.0 / np.linalg.norm(lens.rays(), axis=-1)
+        cosine = 1.0 / ray_lengths(lens)
     else:
         cosine = np.nan_to_num(depth_shares(lens).astype(np.float64)).clip(0.0, 1.0)
     falloff: NDArray[np.float32] = (1.0 - strength * (1.0 - cosine**4)).astype(np.float32)

@@ -10,14 +10,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
+from sailenv_ros.light.relight.found_light import MOST
 from sailenv_ros.light.relight.object_light import SurfacePoints
-from sailenv_ros.light.relight.object_lights import movable_objects
+from sailenv_ros.light.relight.object_lights import ObjectLights, movable_objects
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import WorldSnapshot
+from tests.support.bake_scenes import DARK
 from tests.support.movable_boxes import BLACK, BOX, LAMP, WHITE_SKY, moved, room, scene_of
 from tests.support.tiny_scenes import box_mesh, model_of
 
@@ -172,3 +175,49 @@ def test_a_floor_that_is_gone_has_no_shadow_and_what_came_hides_one() -> None:
     assert_same(under, shadowed(snapshot, (came,)))
     moved_away = replace(snapshot, contents=snapshot.contents)
     assert_same(open_, shadowed(moved_away))
+
+
+def test_a_scene_that_begins_again_has_its_shadows_and_light_at_once() -> None:
+    """As it began, and after a thing has moved: what was found is shown, nothing is found anew."""
+    began = room((BOX, ON_THE_FLOOR), environment=WHITE_SKY, lights=(LAMP,))
+    later, elsewhere = moved(began, 1, 0.3), moved(began, 1, -0.4)
+    store = BakedSceneStore()
+    shown = []
+    for _ in range(2):
+        scene = store.scene_of(began.contents, 1)
+        lights = ObjectLights()
+        shadows = ShownShadows(scene, lights.points)
+        for snapshot in (began, later):
+            light = lights.update(snapshot, scene, (), threads=1)
+            on = shadows.on(scene.baked, movable_objects(snapshot), (), threads=1)
+            shown.append((light, on))
+    for (light, on), (again, on_again) in zip(shown[:2], shown[2:], strict=True):
+        assert on_again.layers[0].bounced is on.layers[0].bounced
+        assert on_again.layers[1].direct is on.layers[1].direct
+        assert on_again.casters == on.casters
+        for id_, one in light.items():
+            np.testing.assert_array_equal(one.bounced, again[id_].bounced)
+    # What is kept is as it was found, though one who took it went on from there.
+    last = shadows.on(scene.baked, movable_objects(elsewhere), (), threads=1)
+    np.testing.assert_array_equal(last.layers[0].bounced, shadowed(elsewhere).layers[0].bounced)
+    third = ShownShadows(store.scene_of(began.contents, 1), SurfacePoints())
+    for snapshot in (began, elsewhere):
+        on = third.on(scene.baked, movable_objects(snapshot), (), threads=1)
+        expected = shadowed(snapshot).layers[0].bounced
+        np.testing.assert_array_equal(on.layers[0].bounced, expected)
+
+
+def test_what_is_kept_of_a_scene_is_little() -> None:
+    """However often its things move, and under another sky nothing is."""
+    snapshot = room((BOX, ON_THE_FLOOR), environment=WHITE_SKY)
+    store = BakedSceneStore()
+    scene = store.scene_of(snapshot.contents, 1)
+    for turn in range(2):
+        shadows = ShownShadows(scene, SurfacePoints())
+        for step in range(4):
+            place = moved(snapshot, 1, 0.1 * step + 0.05 * turn)
+            shadows.on(scene.baked, movable_objects(place), (), threads=1)
+    assert len(scene.found.shadows) == MOST
+    assert store.scene_of(snapshot.contents, 1).found is scene.found
+    dark = replace(snapshot.contents, environment=DARK)
+    assert not store.scene_of(dark, 1).found.shadows
