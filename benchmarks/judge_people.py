@@ -1,4 +1,4 @@
-"""Has detectors look for people in furnished rooms: which share of them do they find?
+"""Has detectors look for people in furnished rooms, and tells which share of them they find.
 
     sailenv dataset make benchmarks/judge_people.yaml -o set
     python -m benchmarks.judge_people set --model nanodet.onnx
@@ -6,15 +6,16 @@
     python -m benchmarks.judge_people set --boxes found.json    # and what it found
 
 One person counts in each view: the one that takes most pixels of those whose body lies in the
-picture and is seen to 70 % or more. A box of a person that overlaps it by half is a hit. `--pictures` writes PNG files; `--boxes`
-reads ``{"0001.png": [[left, top, right, bottom, score], …], …}`` [px].
+picture and is seen to 70 % or more. A box of a person that overlaps it by half is a hit.
+`--pictures` writes PNG files; `--boxes` reads lists of [left, top, right, bottom, score] [px] by
+their names.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -58,11 +59,11 @@ def views(folder: Path) -> Iterator[View]:
         yield View(f"{number:04d}.png", most["asset"], one.frame["rgb"], box)
 
 
-def whole(person: dict[str, Any], width: int, height: int) -> bool:
+def whole(person: Mapping[str, Any], width: int, height: int) -> bool:
     """Return whether somebody lies in the picture and is hardly hidden."""
     left, top, right, bottom = person["amodal_box"]
     within = left > 0 and top > 0 and right < width - 1 and bottom < height - 1
-    return within and person["visible_share"] >= LEAST_SEEN
+    return bool(within and person["visible_share"] >= LEAST_SEEN)
 
 
 def by_model(path: Path) -> Finder:

@@ -107,7 +107,7 @@ def test_rules_look_at_what_there_is(tmp_path: Path) -> None:
 
 
 def test_rules_look_at_what_a_recipe_brings_wherever_it_goes(tmp_path: Path) -> None:
-    """A ball that comes at random and circles is seen whole in each clip, not in the first alone."""
+    """A ball that comes at random and circles is seen in each clip, not in the first alone."""
     ball = {
         "name": "ball", "type": "spawn", "assets": ["sphere"], "scale": 0.4, "gravity": False,
         "within": [[2, 0, 0.5], [2, 0, 0.5]],
