@@ -4,7 +4,8 @@
     python -m benchmarks.endless_run check FILE
 
 `make` has two processes make the parts of the stream and writes a line into FILE for each that is
-whole: the SHA-256 of its frames, those of some frames of their own, memory and time. All its
+whole: the SHA-256 of its frames, those of some frames of their own, time, and memory: what was the
+process's own after the part, and the most that it took meanwhile, mapped files included. All its
 processes are ended by SIGKILL at random moments of the first fifth, and begun again; later calls go
 on, too. `check` counts the parts, makes 200 random frames by their numbers in processes that have
 made none, and tells speed and memory of what ran undisturbed.
@@ -29,7 +30,7 @@ from typing import Any
 import numpy as np
 
 import sailenv_ros.streams as streams
-from benchmarks.judge_streams import digest_of, resident_mib
+from benchmarks.judge_streams import digest_of, forget_peak, memory_mib
 from sailenv_ros.dataset.streams.endless import LARGEST_KEPT_BYTES
 from sailenv_ros.dataset.worker_pool import WorkerPool
 from sailenv_ros.streams.course import Course, load_course
@@ -86,6 +87,7 @@ def _maker(run: Run, on_frame: Callable[[], None]) -> Callable[[int], dict[str, 
 
     def make(part: int) -> dict[str, Any]:
         begin_s, whole, single = time.time(), hashlib.sha256(), {}
+        forget_peak()
         for frame in stream[part * PART : (part + 1) * PART]:
             digest = digest_of(frame)
             whole.update(digest.encode())
@@ -94,7 +96,8 @@ def _maker(run: Run, on_frame: Callable[[], None]) -> Callable[[int], dict[str, 
             on_frame()
         return {
             "part": part, "sha256": whole.hexdigest(), "single": single, "process": os.getpid(),
-            "begin_s": begin_s, "end_s": time.time(), "rss_mib": resident_mib(),
+            "begin_s": begin_s, "end_s": time.time(), "own_mib": memory_mib("RssAnon"),
+            "most_mib": memory_mib("VmHWM"),
         }  # fmt: skip
 
     return make
@@ -215,11 +218,12 @@ def _tell_memory(lines: Sequence[dict[str, Any]]) -> None:
         own = [line for line in lines if line["process"] == process]
         own.sort(key=lambda line: line["part"])
         each = WINDOW // PART // 2
-        most = [
-            round(max(line["rss_mib"] for line in own[place : place + each]))
-            for place in range(WARM_FRAMES // PART, len(own), each)
-        ]
-        print(f"process {process}: most memory in each {WINDOW:,} frames: {most} MiB")
+        for key, words in (("own_mib", "of its own after a part"), ("most_mib", "with files")):
+            most = [
+                round(max(line[key] for line in own[place : place + each]))
+                for place in range(WARM_FRAMES // PART, len(own), each)
+            ]
+            print(f"process {process}: most in each {WINDOW:,} frames, {words}: {most} MiB")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@
     python benchmarks/judge_streams.py avalanche [--experiences N]
     python benchmarks/judge_streams.py drift [--seed N] [--habit NAME]
     python benchmarks/judge_streams.py still [--frames N] [--seed N] [--habit NAME]
-    python benchmarks/judge_streams.py memory [--frames N]
+    python benchmarks/judge_streams.py memory [--frames N] [--seed N]
 
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
@@ -14,7 +14,7 @@ shuffled. `avalanche` trains its `Naive` on experiences that are made when they 
 that walks, or stands, in one room, one drift at a time, which begins at a frame. `still` does so
 without any drift. ADWIN makes a test each 32 frames; its `delta`, the share of false alarms, is
 divided by the number of tests in 100,000 frames (Bonferroni). `memory` makes two frames of each
-episode of `home`, and tells the memory of the process.
+episode of `home`, and tells the memory of the process after each room.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -104,12 +104,13 @@ def main() -> None:
     avalanche.add_argument("--experiences", type=int, default=10)
     drift = actions.add_parser("drift")
     still = actions.add_parser("still")
-    for action in (drift, still):
-        action.add_argument("--seed", type=int, default=SEED)
-        action.add_argument("--habit", choices=HABITS, default="walk")
-    still.add_argument("--frames", type=int, default=FRAMES)
     memory = actions.add_parser("memory")
     memory.add_argument("--frames", type=int, default=410_000)
+    for action in (drift, still, memory):
+        action.add_argument("--seed", type=int, default=SEED)
+    for action in (drift, still):
+        action.add_argument("--habit", choices=HABITS, default="walk")
+    still.add_argument("--frames", type=int, default=FRAMES)
     options = parser.parse_args()
     if options.action == "seek":
         judge_seeking(options.frames)
@@ -122,7 +123,7 @@ def main() -> None:
     elif options.action == "still":
         judge_stillness(options.frames, options.seed, options.habit)
     else:
-        measure_memory(options.frames)
+        measure_memory(options.frames, options.seed)
 
 
 def judge_seeking(count: int) -> None:
@@ -251,21 +252,41 @@ def judge_stillness(count: int, seed: int, habit: str) -> None:
         print(f"{end} frames without drift: {found}", flush=True)
 
 
-def measure_memory(count: int) -> None:
-    """Print the memory of this process after every 10,000 frames, of which few are made."""
+def measure_memory(count: int, seed: int) -> None:
+    """Print the memory of this process after each room, of whose frames few are made."""
     keep_freed_memory(LARGEST_KEPT_BYTES)
-    with streams.open("home", seed=21) as stream:
-        for first in range(0, count, stream.course.episode):
+    with streams.open("home", seed=seed) as stream:
+        episode = stream.course.episode
+        for first in range(0, count, episode):
+            if first % (episode * stream.course.visit) == 0:
+                forget_peak()
             for number in (first, first + 2):
                 stream[number]
-            if first % 10_000 == 0:
-                print(f"frame {first}: {resident_mib():.0f} MiB", flush=True)
+            if (first + episode) % (episode * stream.course.visit) == 0:
+                own, all_mib, most = (memory_mib(one) for one in ("RssAnon", "VmRSS", "VmHWM"))
+                told = f"{own:.0f} MiB of its own, {all_mib:.0f} with files, {most:.0f} at most"
+                print(f"frame {first + episode}: {told}", flush=True)
 
 
-def resident_mib() -> float:
-    """Return the memory of this process [MiB]."""
-    pages = int(Path("/proc/self/statm").read_text().split()[1])
-    return pages * resource.getpagesize() / 2**20
+def memory_mib(entry: str) -> float:
+    """Return an entry of this process's ``/proc/self/status`` [MiB].
+
+    Parameters
+    ----------
+    entry : str
+        ``RssAnon`` is its own memory, ``VmRSS`` that and the pages of files that it has mapped,
+        which all processes share and the system may take back at any time, and ``VmHWM`` the
+        greatest ``VmRSS`` since `forget_peak`.
+    """
+    entries = dict(
+        line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines()
+    )
+    return int(entries[entry].split()[0]) / 1024
+
+
+def forget_peak() -> None:
+    """Have the greatest memory of this process be that of now."""
+    Path("/proc/self/clear_refs").write_text("5")
 
 
 def _plain(habit: str) -> dict[str, Any]:

@@ -73,7 +73,8 @@ def cached_arrays(
     Returns
     -------
     arrays : mapping of str to array
-        Read-only if they were kept.
+        Read-only and mapped, so that their pages can be given back; as they were made where they
+        could not be kept.
     """
     told = repr((kind, code, _processor(), *key)).encode()
     path = array_folder() / f"{kind}-{blake2b(told, digest_size=16).hexdigest()}{SUFFIX}"
@@ -81,8 +82,7 @@ def cached_arrays(
     if kept is not None:
         return kept
     made = make()
-    _write(path, made)
-    return made
+    return _kept(path, made)
 
 
 def array_folder() -> Path:
@@ -165,7 +165,8 @@ def _parsed(data: NDArray[np.uint8]) -> Arrays:
     return arrays
 
 
-def _write(path: Path, arrays: Arrays) -> None:
+def _kept(path: Path, arrays: Arrays) -> Arrays:
+    """Keep arrays; return them as they are read, or as they are if they could not be written."""
     data = _packed(arrays)
     folder = path.parent
     try:
@@ -175,6 +176,8 @@ def _write(path: Path, arrays: Arrays) -> None:
             _tidy(folder, len(data))
     except OSError as problem:
         _log.warning("%s cannot be written (%s); it is made anew each time", path, problem)
+        return arrays
+    return _read(path) or arrays
 
 
 def _packed(arrays: Arrays) -> bytes:

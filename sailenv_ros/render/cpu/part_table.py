@@ -6,7 +6,7 @@ there already are used again: a scene that changes costs what has changed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,8 +100,11 @@ class PartTable:
         """Bring the tables up to date."""
         if contents is self.contents:
             return
-        self._show(contents)
+        # If it fails, the tables are of nothing, and are made anew.
+        before, self.contents = self.contents, None
+        self._show(contents, before)
         self._light_lamps(contents)
+        self.contents = contents
         self._moving = None
 
     def deform(self, snapshot: WorldSnapshot) -> None:
@@ -137,8 +140,7 @@ class PartTable:
                         table["colour"][place] = factors.colour
                         table["emission"][place] = factors.emission
 
-    def _show(self, contents: SceneContents) -> None:
-        before, self.contents = self.contents, contents
+    def _show(self, contents: SceneContents, before: SceneContents | None) -> None:
         same_bake = before is not None and before.baked is contents.baked
         if before is not None and same_bake and before.instances is contents.instances:
             return
@@ -156,13 +158,7 @@ class PartTable:
         shown: list[tuple[_ModelParts, int, bool]] = []
         is_new = False
         deforming: list[tuple[int, int, list[DrawnMesh]]] = []
-        prepared = {id(made.model) for made in self._models.values()}
-        self._textures.prepare(
-            part.material
-            for drawn in contents.instances
-            if id(drawn.model) not in prepared
-            for part in drawn.model.parts
-        )
+        self._take_up_textures(contents)
         for row, (drawn, flat) in enumerate(
             zip(contents.instances, unwrappings(contents), strict=True)
         ):
@@ -203,15 +199,26 @@ class PartTable:
             self._meshes.trim(self.shown_meshes())
             self._textures.trim(self.shown_materials())
 
+    def _take_up_textures(self, contents: SceneContents) -> None:
+        """Make the textures that are missing; those of a room that was left go before."""
+        models = {id(drawn.model): drawn.model for drawn in contents.instances}
+        prepared = {id(made.model) for made in self._models.values()}
+        missing = [model for number, model in models.items() if number not in prepared]
+        if not missing:
+            return
+        # What is told of models that go tells where their textures are.
+        self._models = {key: made for key, made in self._models.items() if id(made.model) in models}
+        self._textures.trim(_materials_of(models.values()))
+        self._textures.prepare(_materials_of(missing))
+
     def shown_meshes(self) -> Iterator[DrawnMesh]:
         """Yield the meshes of all models that are shown."""
         for made in self._models.values():
             yield from made.meshes
 
     def shown_materials(self) -> Iterator[Material]:
-        """Yield the materials of all models that are shown."""
-        for made in self._models.values():
-            yield from (part.material for part in made.model.parts)
+        """Return the materials of all models that are shown."""
+        return _materials_of(made.model for made in self._models.values())
 
     def at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
         """Return which instances have baked light: those that stand where they stood for it."""
@@ -288,6 +295,10 @@ class PartTable:
             _describe(row, part.material)
         see_through = np.array([part.material.alpha == "blend" for part in model.parts], bool)
         return _ModelParts(model, meshes, parts, see_through)
+
+
+def _materials_of(models: Iterable[Model]) -> Iterator[Material]:
+    return (part.material for model in models for part in model.parts)
 
 
 def _describe(row: np.void, material: Material) -> None:

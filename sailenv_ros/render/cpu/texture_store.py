@@ -17,6 +17,9 @@ from sailenv_ros.types.model import Material, Texture
 
 __all__ = ["TextureStore"]
 
+SPARE_BYTES = 8 << 20
+"""Most that is kept of textures that are not shown: of objects that come and go [B]."""
+
 _Key = tuple[int, ...]
 
 _Entry = tuple[object, NDArray[np.uint32], NDArray[np.void]]
@@ -55,14 +58,14 @@ class TextureStore:
         return self._address(_detail_key(material), material, _detail_entry)
 
     def trim(self, shown: Iterable[Material]) -> None:
-        """Forget what is not shown, if that is more than what is."""
+        """Forget what is not shown, if that is more than `SPARE_BYTES`."""
         kept: set[_Key] = set()
         for material in shown:
             kept |= {_colour_key(material), _detail_key(material)}
-        sizes = {key: chain.nbytes for key, (_, chain, _) in self._textures.items()}
-        held = sum(size for key, size in sizes.items() if key in kept)
-        if sum(sizes.values()) > 2 * held:
-            self._textures = {key: entry for key, entry in self._textures.items() if key in kept}
+        spare = self._textures.keys() - kept
+        if sum(self._textures[key][1].nbytes for key in spare) > SPARE_BYTES:
+            for key in spare:
+                del self._textures[key]
 
     def _address(
         self, key: _Key, material: Material, make: Callable[[Material], _Entry | None]

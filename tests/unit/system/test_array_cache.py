@@ -69,6 +69,13 @@ def test_arrays_are_made_once_for_each_key() -> None:
     assert make.calls == 4
 
 
+def test_arrays_that_were_just_made_are_mapped_like_those_that_are_read() -> None:
+    """Else who makes them holds them as memory that cannot be given back."""
+    kept = cached_arrays("kind", [], Maker(a=np.arange(5000)))
+    assert str(only_file()) in Path("/proc/self/maps").read_text()
+    assert not kept["a"].flags.writeable
+
+
 @pytest.mark.parametrize("place", [0, 25, 40, -1])
 def test_a_damaged_file_is_made_anew(place: int, caplog: pytest.LogCaptureFixture) -> None:
     """Of the format's line, the checksum, the description or the arrays."""
