@@ -99,7 +99,7 @@ class Stepper:
         self._way = None
         self._way_s = 0.0
         self._waited_s = 0.0
-        self._swings = 1.0, 1.0
+        self._swings: tuple[float, float] | None = None
         self._space: FreeSpace | None = None
         self._goal: tuple[Place, float | None] | None = None
         self._attention.forget()
@@ -163,7 +163,9 @@ class Stepper:
                 self._wait(way, later)
                 return
             self._waited_s = 0.0
-            self._swings = self._swings[1], self._swing_at(way.at((later + 0.5) * way.step_s))
+            _, now = self._swings_here()
+            within = [way.at((later + share) * way.step_s) for share in (0.0, 0.5, 1.0)]
+            self._swings = now, min(map(self._swing_at, within))
         self._way_s += STEP_S
         if self._way_s >= way.duration_s:
             self._feet = way.feet_after(len(way.prints))
@@ -186,9 +188,19 @@ class Stepper:
         least = self._gait.least_swing
         return min(least + (1.0 - least) * room_m / (self._gait.swing_m * self._scale), 1.0)
 
+    def _swings_here(self) -> tuple[float, float]:
+        """Return the shares of their swing at the begin and the end of this step."""
+        if self._swings is None:
+            if self.crowd is None:  # nothing has happened yet, and nothing is known of the room
+                return 1.0, 1.0
+            self._space = self.crowd.free_space(self._size)
+            swing = self._swing_at(self._moment())
+            self._swings = swing, swing
+        return self._swings
+
     def _with_swing(self, moment: Moment) -> Moment:
         """Return it with the swing of arms now: from step to step it changes smoothly."""
-        before, after = self._swings
+        before, after = self._swings_here()
         done = 1.0 if self._way is None else smooth_step(moment.share)
         return replace(moment, swing_room=before + (after - before) * done)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -97,6 +99,32 @@ def test_hands_stay_out_of_what_one_passes() -> None:
         world.close()
     assert beside[0] < gap_m - 0.03
     assert ahead[0] < 0.6 * ahead[1]
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 180.0])
+def test_hands_of_one_who_is_put_beside_a_wall_stay_out_of_it(turn_deg: float) -> None:
+    """There is no way yet that could say how much room there is."""
+    gap_m = 0.26
+    wall = placed("wall", box("w", (4.0, 0.2, 1.8)), 0.0, gap_m + 0.1, static=True)
+    world = world_of(person("anna", 0.0, -1.5), wall)
+    anna = one(world, "anna")
+    world.step(1)
+    hangs_m = np.abs(_wrists(anna)[:, 1] + 1.5).max()  # where there is room
+    anna.put(Pose((0.0, 0.0, 0.0), (0.0, 0.0, *_half_turn(turn_deg))))
+    world.step(1)
+    assert hangs_m > gap_m - 0.06
+    assert _wrists(anna)[:, 1].max() < gap_m - 0.09
+    world.close()
+
+
+def _half_turn(degrees: float) -> tuple[float, float]:
+    half = np.radians(degrees) / 2.0
+    return float(np.sin(half)), float(np.cos(half))
+
+
+def _wrists(body: Any) -> np.ndarray:
+    assert STICK.rig is not None
+    return np.asarray(body.skeleton().joints[[STICK.rig.joint_of[f"wrist.{s}"] for s in "LR"]])
 
 
 def test_people_do_not_walk_through_each_other() -> None:
