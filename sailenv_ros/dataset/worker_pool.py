@@ -13,6 +13,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack
 from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.context import SpawnContext
@@ -21,6 +22,7 @@ from typing import Any, Generic, TypeVar
 from sailenv_ros.dataset.engine import ATTEMPTS, OnFrames, neighbour_runs
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.native.library import THREADS_VARIABLE
+from sailenv_ros.system.interrupts import held_interrupts
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.parent import end_at_once, end_with_parent
 
@@ -68,7 +70,9 @@ class WorkerPool(Generic[Made]):
         runs = [deque(run) for run in neighbour_runs(numbers, self.workers)]
         pools = [_pool(context, arguments) for _ in runs]
         running: dict[Future[Made], tuple[int, int]] = {}
-        try:
+        with ExitStack() as opened:
+            raise_held = opened.enter_context(held_interrupts())
+            opened.callback(_end_all, pools)
             while any(runs) or running:
                 busy = {place for place, _ in running.values()}
                 for place in (one for one in range(len(runs)) if one not in busy and any(runs)):
@@ -79,6 +83,7 @@ class WorkerPool(Generic[Made]):
                         runs[place].appendleft(number)
                         pools[place] = _renewed(pools[place], context, arguments)
                 done, _ = wait(running, LOOK_INTERVAL_S, FIRST_COMPLETED)
+                raise_held()
                 on_frames(frames.value)
                 for future in sorted(done, key=lambda one: running[one]):
                     place, number = running.pop(future)
@@ -97,9 +102,7 @@ class WorkerPool(Generic[Made]):
                         yield made
             for pool in pools:
                 pool.shutdown()
-        finally:
-            for pool in pools:
-                _end(pool)
+            raise_held()
 
 
 def _next(runs: Sequence[deque[int]], place: int) -> int:
@@ -149,6 +152,11 @@ def _begin_worker(
 def _make(number: int) -> Any:
     assert _made_by is not None
     return _made_by(number)
+
+
+def _end_all(pools: Sequence[ProcessPoolExecutor]) -> None:
+    for pool in pools:
+        _end(pool)
 
 
 def _end(pool: ProcessPoolExecutor) -> None:

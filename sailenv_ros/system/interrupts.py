@@ -9,8 +9,11 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
-__all__ = ["catch_interrupts", "end_at_interrupts"]
+__all__ = ["catch_interrupts", "end_at_interrupts", "held_interrupts"]
 
 _PROGRAMS = ("sailenv", "sim_node", "recorder", "player")
 
@@ -29,6 +32,33 @@ def catch_interrupts() -> None:
     """Have SIGINT raise `KeyboardInterrupt` again, after `end_at_interrupts`."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_DFL and _is_our_program():
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def held_interrupts() -> Iterator[Callable[[], None]]:
+    """Hold Ctrl-C back; yield what raises `KeyboardInterrupt` if it was pressed meanwhile.
+
+    Wherever `KeyboardInterrupt` strikes, between a lock and what would release it too, or in a
+    callback that swallows it. Who waits for other processes asks at a place where it does no harm.
+    Elsewhere than in the main thread, or with a handler of somebody else, nothing is held back.
+    """
+    ours = (
+        threading.current_thread() is threading.main_thread()
+        and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    )
+    asked = threading.Event()
+
+    def raise_held() -> None:
+        if asked.is_set():
+            raise KeyboardInterrupt
+
+    if ours:
+        signal.signal(signal.SIGINT, lambda number, frame: asked.set())
+    try:
+        yield raise_held
+    finally:
+        if ours:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def _is_our_program() -> bool:

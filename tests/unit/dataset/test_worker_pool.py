@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Mapping
@@ -68,3 +69,19 @@ def test_a_killed_worker_is_replaced(tmp_path: Path) -> None:
 def test_a_piece_that_kills_its_workers_is_told(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match=rf"shard 1 was killed {ATTEMPTS} times"):
         _made(tmp_path, {}, {1: ATTEMPTS})
+
+
+def test_ctrl_c_waits_until_nothing_is_half_done(tmp_path: Path) -> None:
+    """It comes while frames are counted, is told after that, and takes the workers along."""
+    counted: list[int] = []
+
+    def on_frames(made: int) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        counted.append(made)
+
+    pool = WorkerPool(workers=2, maker=_maker, arguments=(tmp_path, {0: 9, 2: 9}, {}), piece="one")
+    with pytest.raises(KeyboardInterrupt):
+        list(pool.run(range(4), on_frames))
+    assert len(counted) == 1
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert not multiprocessing.active_children()
