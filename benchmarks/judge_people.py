@@ -3,6 +3,7 @@
     sailenv dataset make benchmarks/judge_people.yaml -o set
     python -m benchmarks.judge_people set --model nanodet.onnx
     python -m benchmarks.judge_people set --pictures FOLDER     # for a detector of another kind
+    node judge_people.mjs FOLDER found.json                     # such as CenterNet, see there
     python -m benchmarks.judge_people set --boxes found.json    # and what it found
 
 One person counts in each view: the one that takes most pixels of those whose body lies in the

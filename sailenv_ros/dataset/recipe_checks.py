@@ -134,10 +134,12 @@ def _choices(data: Mapping[str, Any], scenes: RecipeScenes) -> Iterator[Diagnost
     counts as theirs. While a scene cannot be read, nothing is known of what it has.
     """
     waiting = list(choices_of(data))
-    for names in _added_names(data, scenes.library):
-        if not any(one.kind == "camera" for one in waiting):
+    aims = [one for one in waiting if one.kind == "camera"]
+    for names in _added_names(data, scenes.library) if aims else ():
+        aims = [one for one in aims if not one.meets(names)]
+        if not aims:
             break
-        waiting = [one for one in waiting if one.kind != "camera" or not one.meets(names)]
+    waiting = [one for one in waiting if one.kind != "camera" or one in aims]
     looked: list[str] = []
     known: dict[str, set[str]] = {}
     for scene, names in scenes.names(data) if waiting and scenes.all_read else ():

@@ -17,7 +17,14 @@ from sailenv_ros.scene.randomise.selectors import OfCategory, Selector, selector
 from sailenv_ros.scene.spec_materials import ALL_PARTS
 from sailenv_ros.scene.yaml_nodes import Loc
 
-__all__ = ["AGENT_PREFIX", "RecipeChoice", "choices_of", "fitting_settings", "fitting_things"]
+__all__ = [
+    "AGENT_PREFIX",
+    "RecipeChoice",
+    "choices_of",
+    "choices_of_rule",
+    "fitting_settings",
+    "fitting_things",
+]
 
 AGENT_PREFIX = "dataset_"
 """The agent of a recipe's camera has this before its name, so that no agent of a scene has it."""
@@ -120,13 +127,17 @@ def fitting_things(
     return things, [one.label for one in choices if not one.meets(names)]
 
 
+def choices_of_rule(settings: Mapping[str, Any]) -> list[RecipeChoice]:
+    """Return the choices among the settings of a camera rule: what it shall look at."""
+    return list(choices_of({"cameras": [{"type": "rule", "settings": settings}]}))
+
+
 def fitting_settings(settings: Mapping[str, Any], names: SceneNames) -> Mapping[str, Any] | None:
     """Return the settings of a camera rule without targets that a scene lacks.
 
     None if it has targets and the scene has none of them.
     """
-    entry = {"type": "rule", "settings": settings}
-    choices = list(choices_of({"cameras": [entry]}))
+    choices = choices_of_rule(settings)
     if not choices:
         return settings
     met = [one for one in choices if one.meets(names)]

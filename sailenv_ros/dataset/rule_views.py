@@ -6,11 +6,11 @@ somewhere else in the next clip: a camera that looks at it gets its place when i
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from sailenv_ros.authoring.viewpoints import sample_cameras
 from sailenv_ros.dataset.recipe_cameras import RuleCamera
-from sailenv_ros.dataset.recipe_choices import choices_of, fitting_settings
+from sailenv_ros.dataset.recipe_choices import choices_of_rule, fitting_settings
 from sailenv_ros.dataset.scene_names import SceneNames
 from sailenv_ros.dataset.shard_plan import Clip
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -35,7 +35,7 @@ def aims_at_movers(camera: RuleCamera, core: SynchronousSimulation, names: Scene
     movers = {body.placement.name for body in core.world.bodies if body.behaviours}
     return any(
         movers.intersection(names.meant(one.kind, selector))
-        for one in choices_of({"cameras": [_as_data(camera)]})
+        for one in choices_of_rule(camera.settings)
         for selector in one.selectors
     )
 
@@ -72,7 +72,3 @@ def rule_views(
         settings=settings,
     )
     return [one.pose for one in found]
-
-
-def _as_data(camera: RuleCamera) -> Mapping[str, object]:
-    return {"type": camera.type, "name": camera.name, "settings": camera.settings}

@@ -15,8 +15,8 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing import get_context
-from multiprocessing.context import SpawnContext
 from typing import Any, Generic, TypeVar
 
 from sailenv_ros.dataset.engine import ATTEMPTS, OnFrames, neighbour_runs
@@ -68,7 +68,16 @@ class WorkerPool(Generic[Made]):
         arguments = (self.maker, self.arguments, frames, threads, os.getpid())
         attempts: Counter[int] = Counter()
         runs = [deque(run) for run in neighbour_runs(numbers, self.workers)]
-        pools = [_pool(context, arguments) for _ in runs]
+        # Each worker is a pool of one process, so that a piece goes to the one that it is for.
+        begin = partial(ProcessPoolExecutor, 1, context, _begin_worker, arguments)
+        pools = [begin() for _ in runs]
+
+        def try_again(place: int, number: int) -> None:
+            """Give a piece to a worker in the place of one that was killed."""
+            runs[place].appendleft(number)
+            _end(pools[place])
+            pools[place] = begin()
+
         running: dict[Future[Made], tuple[int, int]] = {}
         with ExitStack() as opened:
             raise_held = opened.enter_context(held_interrupts())
@@ -80,8 +89,7 @@ class WorkerPool(Generic[Made]):
                     try:
                         running[pools[place].submit(_make, number)] = place, number
                     except BrokenProcessPool:  # killed while it had nothing to do
-                        runs[place].appendleft(number)
-                        pools[place] = _renewed(pools[place], context, arguments)
+                        try_again(place, number)
                 done, _ = wait(running, LOOK_INTERVAL_S, FIRST_COMPLETED)
                 raise_held()
                 on_frames(frames.value)
@@ -96,8 +104,7 @@ class WorkerPool(Generic[Made]):
                                 f"the worker of {self.piece} {number} was killed {ATTEMPTS} times; "
                                 "it may need more memory than there is: use fewer workers"
                             ) from None
-                        runs[place].appendleft(number)
-                        pools[place] = _renewed(pools[place], context, arguments)
+                        try_again(place, number)
                     else:
                         yield made
             for pool in pools:
@@ -108,19 +115,6 @@ class WorkerPool(Generic[Made]):
 def _next(runs: Sequence[deque[int]], place: int) -> int:
     """Take the next piece of a worker: of its own run, else the last one of the longest."""
     return runs[place].popleft() if runs[place] else max(runs, key=len).pop()
-
-
-def _pool(context: SpawnContext, arguments: tuple[Any, ...]) -> ProcessPoolExecutor:
-    """Return a worker: a pool of one process, so that a piece goes to the one that it is for."""
-    return ProcessPoolExecutor(1, context, _begin_worker, arguments)
-
-
-def _renewed(
-    pool: ProcessPoolExecutor, context: SpawnContext, arguments: tuple[Any, ...]
-) -> ProcessPoolExecutor:
-    """Return a worker in the place of one that was killed."""
-    _end(pool)
-    return _pool(context, arguments)
 
 
 _made_by: Callable[[int], Any] | None = None

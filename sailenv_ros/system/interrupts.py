@@ -12,6 +12,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
 
 __all__ = ["catch_interrupts", "end_at_interrupts", "held_interrupts"]
 
@@ -36,24 +37,29 @@ def catch_interrupts() -> None:
 
 @contextmanager
 def held_interrupts() -> Iterator[Callable[[], None]]:
-    """Hold Ctrl-C back; yield what raises `KeyboardInterrupt` if it was pressed meanwhile.
+    """Hold Ctrl-C back; yield a function that raises `KeyboardInterrupt` if it was pressed.
 
-    Wherever `KeyboardInterrupt` strikes, between a lock and what would release it too, or in a
-    callback that swallows it. Who waits for other processes asks at a place where it does no harm.
-    Elsewhere than in the main thread, or with a handler of somebody else, nothing is held back.
+    Python raises it anywhere: after a lock is taken and before its owner can release it, or in a
+    callback, where it is lost. Who waits for other processes calls the function where it does no
+    harm. In other threads than the main one, or beside another handler, nothing is held back.
     """
     ours = (
         threading.current_thread() is threading.main_thread()
         and signal.getsignal(signal.SIGINT) is signal.default_int_handler
     )
-    asked = threading.Event()
+    pressed = False
+
+    # No lock: a second Ctrl-C may interrupt this.
+    def hold(number: int, frame: FrameType | None) -> None:
+        nonlocal pressed
+        pressed = True
 
     def raise_held() -> None:
-        if asked.is_set():
+        if pressed:
             raise KeyboardInterrupt
 
     if ours:
-        signal.signal(signal.SIGINT, lambda number, frame: asked.set())
+        signal.signal(signal.SIGINT, hold)
     try:
         yield raise_held
     finally:
