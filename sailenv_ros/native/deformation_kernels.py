@@ -1,22 +1,26 @@
-"""The kernels of surfaces that deform: skinning, clusters, trees, and points on the surface.
+"""The kernels that move the vertices of surfaces: skinning, meshes, clusters and trees.
 
 What they are for stands in `types.deformation`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.library import checked
-from sailenv_ros.native.ray_types import RAY_SHAPE, TREE_NODE, WIDTH
+from sailenv_ros.native.ray_types import TREE_NODE, WIDTH
 from sailenv_ros.native.records import RecordKernel
-from sailenv_ros.native.render_types import CLUSTER, address
+from sailenv_ros.native.render_types import CLUSTER
 
-__all__ = ["INFLUENCES", "DeformingSurface", "move_clusters", "refit", "skin", "surface_points"]
+__all__ = [
+    "INFLUENCES",
+    "bounding_sphere",
+    "move_clusters",
+    "move_mesh",
+    "refit",
+    "skin",
+]
 
 INFLUENCES = 4
 """Bones that move a vertex, at most."""
@@ -31,44 +35,23 @@ _CLUSTERS = RecordKernel(
     ("integer", "count corner_count index_count"),
     ("array", "corners indices clusters"),
 )
+_SPHERE = RecordKernel(
+    "bounding_sphere",
+    ("integer", "count stride"),
+    ("array", "columns sphere"),
+)
+_MESH = RecordKernel(
+    "move_mesh",
+    ("integer", "vertex_count corner_count stride index_count cluster_count"),
+    ("array", "positions normals sources indices columns vertices clusters sphere"),
+)
 _REFIT = RecordKernel(
     "refit_tree",
     ("integer", "nodes_count leaves triangles vertices"),
     ("array", "positions vertex_of order nodes corners blocks"),
 )
-_SURFACE = RecordKernel(
-    "surface_points",
-    ("integer", "height width"),
-    ("array", "points instance row_of_instance"),
-    ("integer", "rows"),
-    ("array", "shapes targets scales"),
-    ("integer", "relative"),
-    ("array", "found"),
-)
-
 Doubles = NDArray[np.float64]
 Floats = NDArray[np.float32]
-
-
-class DeformingSurface(NamedTuple):
-    """The triangles of one instance, where they are in a picture and where they are looked for.
-
-    Attributes
-    ----------
-    instance_id : int
-    scale : (3,) tuple of float
-        Of the model.
-    shape : (1,) RAY_SHAPE
-        As they are in the picture, with triangles in float64.
-    present, target : (T, 3, 3) float64
-        Their corners in the picture, and the corners that are wanted.
-    """
-
-    instance_id: int
-    scale: tuple[float, float, float]
-    shape: NDArray[np.void]
-    present: Doubles
-    target: Doubles
 
 
 def skin(
@@ -143,6 +126,78 @@ def move_clusters(corners: Floats, indices: NDArray[np.uint32], clusters: NDArra
     )
 
 
+def bounding_sphere(columns: Floats, count: int) -> Doubles:
+    """Return centre and radius of a sphere around corners.
+
+    Parameters
+    ----------
+    columns : (3, K) float32
+        Coordinate by coordinate.
+    count : int
+        How many of them are corners; the others are room for steps of several.
+
+    Returns
+    -------
+    sphere : (4,) float64
+        Zeros without corners. The radius is still enough where it is read in single precision.
+    """
+    checked("columns", columns, np.float32, (3, None))
+    sphere = np.empty(4)
+    _SPHERE(1, count=count, stride=columns.shape[1], columns=columns, sphere=sphere)
+    return sphere
+
+
+def move_mesh(
+    positions: Floats,
+    normals: Floats,
+    sources: NDArray[np.uint32],
+    indices: NDArray[np.uint32],
+    columns: Floats,
+    vertices: Floats,
+    clusters: NDArray[np.void],
+) -> Doubles:
+    """Let a mesh, as it is drawn, take the vertices of an instant.
+
+    Parameters
+    ----------
+    positions, normals : (V, 3) float32
+    sources : (K,) uint32
+        A vertex of each corner.
+    indices : (3 M,) uint32
+        Of corners, in the order of the clusters.
+    columns : (3, K or more) float32
+        Takes the corners, coordinate by coordinate.
+    vertices : (V, 8) float32
+        Takes the normals, as its first three.
+    clusters : (C,) CLUSTER
+        Changed in place.
+
+    Returns
+    -------
+    sphere : (4,) float64
+        As `bounding_sphere`.
+    """
+    count = len(positions)
+    sphere = np.empty(4)
+    _MESH(
+        1,
+        vertex_count=count,
+        corner_count=len(sources),
+        stride=checked("columns", columns, np.float32, (3, None)).shape[1],
+        index_count=len(indices),
+        cluster_count=len(clusters),
+        positions=checked("positions", positions, np.float32, (None, 3)),
+        normals=checked("normals", normals, np.float32, (count, 3)),
+        sources=checked("sources", sources, np.uint32, (None,)),
+        indices=checked("indices", indices, np.uint32, (None,)),
+        columns=columns,
+        vertices=checked("vertices", vertices, np.float32, (count, 8)),
+        clusters=checked("clusters", clusters, CLUSTER, (None,)),
+        sphere=sphere,
+    )
+    return sphere
+
+
 def refit(
     positions: Floats,
     vertex_of: NDArray[np.uint32],
@@ -184,54 +239,3 @@ def refit(
         blocks=blocks,
     )
     return fitted, corners, blocks
-
-
-def surface_points(
-    points: Floats,
-    instance: NDArray[np.uint16],
-    surfaces: Sequence[DeformingSurface],
-    found: Floats,
-    *,
-    relative: bool,
-    threads: int,
-) -> None:
-    """Find where the points of a picture are when the triangles that they lie on are elsewhere.
-
-    Parameters
-    ----------
-    points : (H, W, 3) float32
-        In each instance's own frame, scale included [m]; nan where nothing is known.
-    instance : (H, W) uint16
-    surfaces : sequence of DeformingSurface
-        Other instances are left alone.
-    found : (H, W, 3) float32
-        Takes the places in the instance's own frame [m]; nan where no triangle is near.
-    relative : bool
-        True for how far they are from where they are in the picture.
-    threads : int
-    """
-    height, width = instance.shape
-    rows = np.zeros(65536, np.uint16)
-    for number, surface in enumerate(surfaces):
-        count = len(surface.present)
-        checked("corners", surface.present, np.float64, (count, 3, 3))
-        checked("wanted corners", surface.target, np.float64, (count, 3, 3))
-        rows[surface.instance_id] = 1 + number
-    shapes = np.concatenate([np.zeros(0, RAY_SHAPE), *(one.shape for one in surfaces)])
-    targets = np.array(
-        [(address(one.target), address(one.present)) for one in surfaces], np.uint64
-    ).reshape(-1, 2)
-    _SURFACE(
-        threads,
-        height=height,
-        width=width,
-        points=checked("points", points, np.float32, (height, width, 3)),
-        instance=checked("instance", instance, np.uint16, (height, width)),
-        row_of_instance=rows,
-        rows=len(surfaces),
-        shapes=shapes,
-        targets=targets,
-        scales=np.array([one.scale for one in surfaces], np.float64).reshape(-1, 3),
-        relative=relative,
-        found=checked("found", found, np.float32, (height, width, 3)),
-    )

@@ -22,6 +22,7 @@ from sailenv_ros.native.render_types import (
     LIGHT,
     OUTPUTS,
     PART,
+    TRIANGLE_PLACE,
     VIEW,
     address,
     record,
@@ -115,6 +116,7 @@ class Drawing(_Scratch):
         surface: NDArray[np.float32] | None = None,
         radiance: NDArray[np.float16] | None = None,
         attributes: Sequence[NDArray[np.float32] | None] = (),
+        places: NDArray[np.void] | None = None,
         poses: DrawnPoses | None = None,
     ) -> None:
         """Draw what a camera sees.
@@ -133,6 +135,9 @@ class Drawing(_Scratch):
             Takes exposed linear radiance, and the share of it that came from around.
         attributes : sequence of (H, W, C) float32 or None
             Take the views of source 'geometry', in their order; see `types.views.VIEWS`.
+        places : (H, W) TRIANGLE_PLACE or None
+            Takes where on its triangle each pixel is, of models that deform: vertices of all parts
+            of the model, one part after another, and their weights. Elsewhere it is left alone.
         poses : DrawnPoses or None
             Of a rolling shutter, for each row or, where the picture has samples, each so many
             rows; counts instead of the view's. None draws all rows from one place.
@@ -149,10 +154,13 @@ class Drawing(_Scratch):
         ):
             if array is not None:
                 checked(name, array, dtype, (height, width, channels))
+        if places is not None:
+            checked("places", places, TRIANGLE_PLACE, (height, width))
         outputs = record(
             OUTPUTS,
             surface_at=address(surface),
             radiance_at=address(radiance),
+            places_at=address(places),
         )
         outputs["attributes_at"][0, : len(attributes)] = [address(a) for a in attributes]
         listed = view, instances, _listed(parts), _listed(glass), light, outputs
@@ -303,6 +311,7 @@ def structure_sizes() -> dict[str, tuple[int, int]]:
         "lens_table": LENS_TABLE,
         "cube_face": CUBE_FACE,
         "lens_tiles": LENS_TILES,
+        "triangle_place": TRIANGLE_PLACE,
     }
     sizes = np.zeros(len(ours), np.int64)
     _STRUCTURES(sizes)

@@ -25,7 +25,9 @@ __all__ = [
     "PART_FINISH_MAP",
     "PART_MASKED",
     "PART_NORMAL_MAP",
+    "RIGID",
     "TEXTURE",
+    "TRIANGLE_PLACE",
     "VIEW",
     "address",
     "record",
@@ -55,6 +57,9 @@ TEXTURE = structure(("texels_at", ADDRESS), ("log2_size", "<i8"))
 
 PART_DOUBLE_SIDED, PART_MASKED, PART_FINISH_MAP, PART_NORMAL_MAP = 1, 2, 4, 8
 
+RIGID = -1
+"""`first_vertex` of parts of models that do not deform."""
+
 PART = structure(
     ("corner_x_at corner_y_at corner_z_at corner_indices_at vertex_indices_at", ADDRESS),
     ("vertices_at clusters_at colour_map_at detail_map_at", ADDRESS),
@@ -63,7 +68,7 @@ PART = structure(
     ("base", "<f4", 3),
     ("roughness metallic alpha_cutoff emission cutoff_fall least_cutoff", "<f4"),
     ("chart", "<f4", 4),
-    ("flags instance id has_chart", "<i4"),
+    ("flags instance id has_chart first_vertex", "<i4"),
 )
 
 INSTANCES = structure(
@@ -120,12 +125,15 @@ VIEW = structure(
     ("table_at fine_table_at", ADDRESS),
 )
 
+TRIANGLE_PLACE = structure(("vertices", "<u4", 3), ("weights", "<f4", 3))
+
 MOST_ATTRIBUTES = 8
 """Views that are attributes of surfaces, at most."""
 
 OUTPUTS = structure(
     ("surface_at radiance_at", ADDRESS),
     ("attributes_at", ADDRESS, MOST_ATTRIBUTES),
+    ("places_at", ADDRESS),
 )
 
 

@@ -9,13 +9,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.types.rig import Rig
 
-__all__ = ["Posture", "Pose3", "aligned", "joint_frames", "skin_matrices", "turn_about"]
+__all__ = [
+    "JointFrames",
+    "Posture",
+    "Pose3",
+    "aligned",
+    "joint_frames",
+    "skin_matrices",
+    "turn_about",
+]
 
 Doubles = NDArray[np.float64]
 
@@ -39,7 +48,11 @@ class Posture:
     turns: Mapping[str, Doubles] = field(default_factory=dict)
 
 
-def joint_frames(rig: Rig, posture: Posture) -> tuple[Doubles, Doubles]:
+JointFrames: TypeAlias = tuple[Doubles, Doubles]
+"""Rotations and places of joints; see `joint_frames`."""
+
+
+def joint_frames(rig: Rig, posture: Posture) -> JointFrames:
     """Return (J, 3, 3) rotations and (J, 3) places of the joints, body frame [m]."""
     count = len(rig.names)
     turns, places = np.empty((count, 3, 3)), np.empty((count, 3))

@@ -12,8 +12,9 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.deformation_kernels import DeformingSurface, refit
+from sailenv_ros.native.deformation_kernels import refit
 from sailenv_ros.native.render_types import address
+from sailenv_ros.native.surface_kernels import DeformingSurface, SurfaceTree
 from sailenv_ros.rays.model_triangles import triangles_of
 from sailenv_ros.rays.triangle_tree import TriangleTree, triangle_tree
 from sailenv_ros.types.deformation import Deformation
@@ -80,9 +81,8 @@ def deformed_model(deformation: Deformation) -> OpaqueModel:
     """Return what rays need of a model at an instant; the same object each time."""
     if deformation not in _deformed:
         rest = opaque_model(deformation.model)
-        positions = [np.zeros((0, 3), np.float32), *(m.positions for m in deformation.meshes)]
         nodes, corners, blocks = refit(
-            np.concatenate(positions), rest.vertex_of, rest.tree.order, rest.tree.nodes
+            deformation.positions, rest.vertex_of, rest.tree.order, rest.tree.nodes
         )
         record = rest.tree.record.copy()
         record["nodes_at"], record["triangles_at"] = address(nodes), address(blocks)
@@ -98,16 +98,20 @@ def surface_between(
     scale: tuple[float, float, float],
     present: Deformation | Model,
     target: Deformation | Model,
+    *,
+    with_tree: bool = True,
 ) -> DeformingSurface:
-    """Return the triangles of an instance where they are, and where they are looked for.
+    """Return the surface of an instance where it is, and where it is looked for.
 
     Parameters
     ----------
     present, target : Deformation or Model
         Of one model; the model itself is the surface at rest.
+    with_tree : bool
+        Whether triangles can be looked for in it.
     """
-    now, then = (
-        deformed_model(shape) if isinstance(shape, Deformation) else opaque_model(shape)
-        for shape in (present, target)
-    )
-    return DeformingSurface(instance_id, scale, now.tree.record, now.corners, then.corners)
+    tree = None
+    if with_tree:
+        now = opaque_model(present) if isinstance(present, Model) else deformed_model(present)
+        tree = SurfaceTree(now.tree.record, now.vertex_of)
+    return DeformingSurface(instance_id, scale, present.positions, target.positions, tree)

@@ -9,7 +9,7 @@ object.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple, TypeAlias
 
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.types.mesh import joined_vectors
 from sailenv_ros.types.model import Material, Model, ModelPart
 
 __all__ = ["Deformation", "MovedMesh"]
@@ -37,7 +38,7 @@ class MovedMesh(NamedTuple):
     normals: NDArray[np.float32]
 
 
-MakeMeshes: TypeAlias = Callable[[], Sequence[tuple[NDArray[np.float32], NDArray[np.float32]]]]
+MakeMeshes: TypeAlias = Callable[[], Iterable[tuple[NDArray[np.float32], NDArray[np.float32]]]]
 
 
 class Deformation:
@@ -84,13 +85,17 @@ class Deformation:
         return made
 
     @cached_property
+    def positions(self) -> NDArray[np.float32]:
+        """(V, 3) float32: vertices of all parts, one part after another; see `Model.positions`."""
+        return joined_vectors(mesh.positions for mesh in self.meshes)
+
+    @cached_property
     def bounds(self) -> NDArray[np.float64]:
         """(2, 3) float64: lowest and highest corner of all vertices, before the scale [m]."""
-        found = [mesh.positions for mesh in self.meshes if len(mesh.positions)]
-        if not found:
+        if not len(self.positions):
             return np.zeros((2, 3))
         # Rows of one coordinate are compared many at a time.
-        columns = np.concatenate(found).T.copy()
+        columns = self.positions.T.copy()
         return np.array([columns.min(axis=1), columns.max(axis=1)], np.float64)
 
     def only(self, meshes: tuple[int, ...]) -> Deformation:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import AssetError
 from sailenv_ros.types.inertia import Inertia
 from sailenv_ros.types.joints import Detents, SoftClose
+from sailenv_ros.types.mesh import Mesh, joined_vectors
 from sailenv_ros.types.rig import Rig
 from sailenv_ros.types.shapes import (
     BoxShape,
@@ -44,45 +45,6 @@ __all__ = [
 ]
 
 Texture: TypeAlias = NDArray[np.uint8]
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Mesh:
-    """Triangles of one material; arrays are read-only.
-
-    Attributes
-    ----------
-    positions : (N, 3) float32
-        Vertices in the body frame (x forward, y left, z up) [m].
-    normals : (N, 3) float32
-        Unit normals of the vertices.
-    uvs : (N, 2) float32
-        Texture coordinates, v from the texture's bottom row up (glTF's v is flipped on import).
-    triangles : (M, 3) uint32
-        Vertex indices, counter-clockwise seen from outside.
-    """
-
-    positions: NDArray[np.float32]
-    normals: NDArray[np.float32]
-    uvs: NDArray[np.float32]
-    triangles: NDArray[np.uint32]
-
-    def __post_init__(self) -> None:
-        count = len(self.positions)
-        expected = {"positions": (count, 3), "normals": (count, 3), "uvs": (count, 2)}
-        for name, shape in expected.items():
-            array = np.ascontiguousarray(getattr(self, name), dtype=np.float32)
-            if array.shape != shape or not np.isfinite(array).all():
-                raise AssetError("mesh", f"{name} must be {shape} finite numbers")
-            array.flags.writeable = False
-            object.__setattr__(self, name, array)
-        triangles = np.ascontiguousarray(self.triangles, dtype=np.uint32)
-        if triangles.ndim != 2 or triangles.shape[1] != 3:
-            raise AssetError("mesh", f"triangles must be (M, 3), got {triangles.shape}")
-        if triangles.size and int(triangles.max()) >= count:
-            raise AssetError("mesh", f"a triangle names vertex {triangles.max()} of {count}")
-        triangles.flags.writeable = False
-        object.__setattr__(self, "triangles", triangles)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -155,6 +117,16 @@ class Model:
     def bounds(self) -> NDArray[np.float64]:
         """Return (2, 3) float64 read-only: lowest and highest corner in the body frame [m]."""
         return self._bounds
+
+    @cached_property
+    def positions(self) -> NDArray[np.float32]:
+        """(V, 3) float32 read-only: vertices of all parts, one part after another [m]."""
+        return joined_vectors(part.mesh.positions for part in self.parts)
+
+    @cached_property
+    def normals(self) -> NDArray[np.float32]:
+        """(V, 3) float32 read-only: unit normals of the same."""
+        return joined_vectors(part.mesh.normals for part in self.parts)
 
     @cached_property
     def middle(self) -> NDArray[np.float64]:

@@ -87,6 +87,14 @@ class Rig:
             bones.flags.writeable = weights.flags.writeable = False
 
     @cached_property
+    def skin(self) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
+        """(V, 4) uint16 and float32: `bones` and `weights` of all parts, one after another."""
+        bones = np.concatenate([np.zeros((0, 4), np.uint16), *self.bones])
+        weights = np.concatenate([np.zeros((0, 4), np.float32), *self.weights])
+        bones.flags.writeable = weights.flags.writeable = False
+        return bones, weights
+
+    @cached_property
     def joint_of(self) -> dict[str, int]:
         """Numbers of joints by their names."""
         return {name: number for number, name in enumerate(self.names)}

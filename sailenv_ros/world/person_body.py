@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.behaviours import STEP_S, RunningBehaviour
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.postures.reaching import grip_place
-from sailenv_ros.postures.skeleton import joint_frames, skin_matrices
+from sailenv_ros.postures.skeleton import JointFrames, joint_frames, skin_matrices
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.rig import Rig
@@ -44,6 +44,8 @@ class PersonBody(Body):
     ----------
     walker : Walker
         What it does.
+    frames : (J, 3, 3) and (J, 3) float64, or None
+        `joint_frames` when `deformation` was asked for last.
     """
 
     def __init__(self, client: BulletClient, placement: Placement) -> None:
@@ -59,6 +61,7 @@ class PersonBody(Body):
         self.walker.pass_through = self._pass_through
         super().__init__(client, replace(placement, static=False))
         self._limbs = Limbs(client, self._rig) if self._scale == 1.0 else None
+        self.frames: JointFrames | None = None
         self._posed: tuple[bytes, Deformation] | None = None
         self._steps = 0
         self._place_limbs()
@@ -173,17 +176,17 @@ class PersonBody(Body):
 
     def deformation(self) -> Deformation:
         """Return where its skin is now; the same object until it moves."""
-        turns, places = joint_frames(self._rig, self.walker.posture)
-        matrices = skin_matrices(self._rig, turns, places)
+        self.frames = joint_frames(self._rig, self.walker.posture)
+        matrices = skin_matrices(self._rig, *self.frames)
         key = matrices.tobytes()
         if self._posed is None or self._posed[0] != key:
             self._posed = key, skin_over(self.placement.asset.model, self._rig, matrices)
         return self._posed[1]
 
-    def skeleton(self) -> Skeleton:
-        """Return where its joints and keypoints are now."""
+    def skeleton(self, frames: JointFrames | None = None) -> Skeleton:
+        """Return where its joints and keypoints are now; by the frames if they are given."""
         rig = self._rig
-        turns, places = joint_frames(rig, self.walker.posture)
+        turns, places = frames or joint_frames(rig, self.walker.posture)
         points = np.array([
             places[point.joint]
             + turns[point.joint] @ (np.asarray(point.position_m) - rig.heads[point.joint])
@@ -254,5 +257,9 @@ def deformations_of(
 
 
 def skeletons_of(bodies: Mapping[int, Body]) -> dict[int, Skeleton]:
-    """Return the skeletons of people and animals, by their ids."""
-    return {id_: body.skeleton() for id_, body in bodies.items() if isinstance(body, PersonBody)}
+    """Return the skeletons of people and animals, by their ids, as `deformations_of` found them."""
+    return {
+        id_: body.skeleton(body.frames)
+        for id_, body in bodies.items()
+        if isinstance(body, PersonBody)
+    }

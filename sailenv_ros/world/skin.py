@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -72,15 +72,11 @@ def skin_over(model: Model, rig: Rig, matrices: Doubles) -> Deformation:
         Where each joint takes what is at rest, body frame before the scale.
     """
 
-    def made() -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]:
-        parts = zip(model.parts, rig.bones, rig.weights, strict=True)
-        return [
-            skin(
-                *(part.mesh.positions, part.mesh.normals, bones, weights, matrices),
-                threads=thread_count(),
-            )
-            for part, bones, weights in parts
-        ]
+    def made() -> Iterable[tuple[NDArray[np.float32], NDArray[np.float32]]]:
+        given = (model.positions, model.normals, *rig.skin, matrices)
+        ends = np.cumsum([len(part.mesh.positions) for part in model.parts])[:-1]
+        moved, turned = (np.split(one, ends) for one in skin(*given, threads=thread_count()))
+        return zip(moved, turned, strict=True)
 
     return Deformation(model, made)
 

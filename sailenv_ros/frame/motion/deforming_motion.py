@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.motion.rigid_motion import MotionTable, ObservedPoses, rigid_points
-from sailenv_ros.native.deformation_kernels import surface_points
 from sailenv_ros.native.motion_kernels import SurfaceMotions
+from sailenv_ros.native.surface_kernels import surface_points
 from sailenv_ros.rays.opaque_models import surface_between
 
 __all__ = ["object_points", "surface_motions"]
@@ -30,6 +30,7 @@ def surface_motions(
     table: MotionTable,
     *,
     threads: int,
+    places: NDArray[np.void] | None = None,
 ) -> SurfaceMotions | None:
     """Return the offsets that a kernel of motion adds; None where nothing deforms.
 
@@ -41,18 +42,26 @@ def surface_motions(
     table : MotionTable
         Of these two.
     threads : int
+    places : (H, W) TRIANGLE_PLACE or None
+        Where on its triangle each point of what deforms is; None looks for it.
     """
     deforming = table.deforming_ids
     if not deforming:
         return None
     surfaces = [
-        surface_between(key, seen.scale, seen.shape, end.surfaces[key].shape)
+        surface_between(
+            *(key, seen.scale, seen.shape, end.surfaces[key].shape), with_tree=places is None
+        )
         for key in deforming
         for seen in (begin.surfaces[key],)
     ]
     offsets = np.empty((*instance.shape, 3), np.float32)
-    points = rigid_points(reach, instance, _only(begin, deforming), threads=threads)
-    surface_points(points, instance, surfaces, offsets, relative=True, threads=threads)
+    points = None
+    if places is None:
+        points = rigid_points(reach, instance, _only(begin, deforming), threads=threads)
+    surface_points(
+        *(points, instance, surfaces, offsets), relative=True, threads=threads, places=places
+    )
     rows = table.row_of_instance[list(deforming)]
     flags = np.zeros(len(table.motions), np.bool_)
     flags[rows] = True
@@ -64,7 +73,12 @@ def surface_motions(
 
 
 def object_points(
-    reach: NDArray[np.float32], instance: NDArray[np.uint16], poses: ObservedPoses, *, threads: int
+    reach: NDArray[np.float32],
+    instance: NDArray[np.uint16],
+    poses: ObservedPoses,
+    *,
+    threads: int,
+    places: NDArray[np.void] | None = None,
 ) -> NDArray[np.float32]:
     """Return each pixel's surface point in its instance's own frame, of what deforms at rest.
 
@@ -74,6 +88,8 @@ def object_points(
         The camera's views; of the two that tell it the one that `reach_view` names.
     poses : ObservedPoses
     threads : int
+    places : (H, W) TRIANGLE_PLACE or None
+        As `surface_motions` takes them.
 
     Returns
     -------
@@ -82,11 +98,13 @@ def object_points(
     """
     points = rigid_points(reach, instance, poses, threads=threads)
     surfaces = [
-        surface_between(key, seen.scale, seen.shape, seen.shape.model)
+        surface_between(*(key, seen.scale, seen.shape, seen.shape.model), with_tree=places is None)
         for key, seen in poses.surfaces.items()
     ]
     if surfaces:
-        surface_points(points, instance, surfaces, points, relative=False, threads=threads)
+        surface_points(
+            *(points, instance, surfaces, points), relative=False, threads=threads, places=places
+        )
     return points
 
 

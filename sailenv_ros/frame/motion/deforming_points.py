@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.deformation_kernels import surface_points
 from sailenv_ros.native.library import thread_count
+from sailenv_ros.native.surface_kernels import surface_points
 from sailenv_ros.rays.opaque_models import surface_between
 from sailenv_ros.types.instance_states import InstanceStates
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.deformation_kernels import move_clusters
+from sailenv_ros.native.deformation_kernels import bounding_sphere, move_mesh
 from sailenv_ros.native.render_types import CLUSTER
 from sailenv_ros.render.scene.clusters import clusters_of
 from sailenv_ros.render.scene.drawn_meshes import DrawnMesh, corner_sources, corners_of
@@ -60,11 +60,14 @@ class MeshArrays:
         if moved is self._moved:
             return
         self._moved = moved
-        corners = moved.positions.take(self.corner_sources, axis=0)
-        self.corners[:, : self.corner_count] = corners.T
-        self.vertices[:, :3] = moved.normals
-        move_clusters(corners, self.corner_indices, self.clusters)
-        self.sphere = _sphere_of(self.corners[:, : self.corner_count])
+        self.sphere = move_mesh(
+            *moved,
+            self.corner_sources,
+            self.corner_indices,
+            self.corners,
+            self.vertices,
+            self.clusters,
+        )
 
 
 class MeshStore:
@@ -106,19 +109,6 @@ def _mesh_arrays(drawn: DrawnMesh) -> MeshArrays:
         vertex_indices=np.ascontiguousarray(triangles.reshape(-1), np.uint32),
         vertices=vertices,
         clusters=np.ascontiguousarray(clusters.astype(CLUSTER)),
-        sphere=_sphere_of(columns[:, : len(corners)]),
+        sphere=bounding_sphere(columns, len(corners)),
         corner_sources=corner_sources(triangles, numbers) if drawn.owner else _NO_SOURCES,
     )
-
-
-def _sphere_of(columns: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return centre and radius of a sphere around corners (3, K)."""
-    sphere = np.zeros(4)
-    if columns.size:
-        low, high = columns.min(axis=1), columns.max(axis=1)
-        sphere[:3] = 0.5 * (low.astype(np.float64) + high)
-        away = columns - sphere[:3, None]
-        away *= away
-        # Kernels read it in single precision.
-        sphere[3] = 1.0001 * np.sqrt((away[0] + away[1] + away[2]).max()) + 1e-6
-    return sphere

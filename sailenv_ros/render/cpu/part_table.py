@@ -19,6 +19,7 @@ from sailenv_ros.native.render_types import (
     PART_FINISH_MAP,
     PART_MASKED,
     PART_NORMAL_MAP,
+    RIGID,
     address,
     record,
 )
@@ -278,7 +279,7 @@ class PartTable:
                 yield _MovingMesh(owner, drawn, mesh, rest, places)
 
     def _make(self, model: Model, meshes: list[DrawnMesh]) -> _ModelParts:
-        parts = np.zeros(len(model.parts), PART)
+        parts, count = np.zeros(len(model.parts), PART), 0
         for row, part, drawn in zip(parts, model.parts, meshes, strict=True):
             mesh = self._meshes.get(drawn)
             for axis, name in enumerate(("corner_x_at", "corner_y_at", "corner_z_at")):
@@ -290,6 +291,8 @@ class PartTable:
             row["corner_count"] = mesh.corner_count
             row["cluster_count"] = len(mesh.clusters)
             row["sphere"] = mesh.sphere
+            row["first_vertex"] = count if drawn.owner else RIGID
+            count += len(part.mesh.positions)
             row["colour_map_at"] = self._textures.colour_map(part.material)
             row["detail_map_at"] = self._textures.detail_map(part.material)
             _describe(row, part.material)

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.lens_rays import tells_depth
 from sailenv_ros.native.drawing import Drawing, DrawnPoses
 from sailenv_ros.native.library import native_library
-from sailenv_ros.native.render_types import PART, VIEW, record
+from sailenv_ros.native.render_types import PART, TRIANGLE_PLACE, VIEW, record
 from sailenv_ros.render.cpu.cube_faces import lens_tables
 from sailenv_ros.render.cpu.frame_light import FrameLight
 from sailenv_ros.render.cpu.part_table import PartTable
+from sailenv_ros.render.picture.annotate import POINT_VIEWS
 from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.flat_mirrors import Window
@@ -130,6 +131,8 @@ class NativeRenderer(DrawingRenderer):
         for view in _ATTRIBUTES:
             if view in wanted:
                 arrays[view] = np.empty(VIEWS[view].shape(height, width), VIEWS[view].dtype)
+        if snapshot.deformations and not wanted.isdisjoint(POINT_VIEWS):
+            arrays["places"] = np.empty((height, width), TRIANGLE_PLACE)
         radiance = None
         if light is not None and not sampled:
             radiance = arrays["rgb"] = np.empty((height, width, 4), np.float16)
@@ -142,6 +145,7 @@ class NativeRenderer(DrawingRenderer):
             surface=arrays["surface"],
             radiance=radiance,
             attributes=[arrays.get(view) for view in _ATTRIBUTES],
+            places=arrays.get("places"),
             poses=rows,
         )
         if sampled:

@@ -38,12 +38,15 @@ from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
 
-__all__ = ["annotate", "with_depth"]
+__all__ = ["POINT_VIEWS", "annotate", "with_depth"]
 
 _NO_CATEGORIES = np.zeros(65536, np.uint8)
 
 _MOTION_OUTPUTS = {"flow": "flow", "flow_valid": "valid", "occlusion": "hidden"}
 """Views of the motion to the previous frame, as `move_points` calls them."""
+
+POINT_VIEWS = frozenset({*_MOTION_OUTPUTS, "object_coords"})
+"""Views for which the points of surfaces that deform are looked for."""
 
 
 def annotate(
@@ -55,6 +58,7 @@ def annotate(
     threads: int = 1,
     *,
     rows: RowPoses | None = None,
+    places: NDArray[np.void] | None = None,
 ) -> dict[str, NDArray[Any]]:
     """Make the ground-truth views.
 
@@ -71,6 +75,8 @@ def annotate(
         The views do not depend on it.
     rows : RowPoses or None
         As `RenderBackend.render` takes them.
+    places : (H, W) TRIANGLE_PLACE or None
+        As `Drawing.picture` makes them; None looks for the triangles of what deforms.
 
     Returns
     -------
@@ -109,12 +115,12 @@ def annotate(
     now = _poses_of(Observation(snapshot=snapshot, camera=camera, rows=rows))
     moved = {key: arrays[view] for view, key in _MOTION_OUTPUTS.items() if view in arrays}
     if moved:
-        _add_motion(arrays, moved, snapshot, previous, now, threads)
+        _add_motion(arrays, moved, snapshot, previous, now, threads, places)
     if wide:
         arrays["category"] = snapshot.contents.category_of_instance[arrays["instance"]]
     if "object_coords" in wanted:
         arrays["object_coords"] = object_points(
-            arrays[reach_view(lens)], arrays["instance"], now, threads=threads
+            *(arrays[reach_view(lens)], arrays["instance"], now), threads=threads, places=places
         )
     return {name: arrays[name] for name in wanted}
 
@@ -158,6 +164,7 @@ def _add_motion(
     previous: Observation | None,
     now: ObservedPoses,
     threads: int,
+    places: NDArray[np.void] | None,
 ) -> None:
     """Fill in the views of the motion to the previous frame; without one nothing has moved."""
     lens = now.camera.intrinsics
@@ -176,7 +183,9 @@ def _add_motion(
     duration_s = (previous.snapshot.sim_time_ns - snapshot.sim_time_ns) * 1e-9
     depth = previous.depth if "hidden" in moved else None
     reach = arrays[reach_view(lens)]
-    surfaces = surface_motions(reach, arrays["instance"], now, past, table, threads=threads)
+    surfaces = surface_motions(
+        *(reach, arrays["instance"], now, past, table), threads=threads, places=places
+    )
     move_points(
         reach,
         arrays["instance"],

@@ -111,7 +111,9 @@ class DrawingRenderer(ABC):
             began = time.perf_counter()
         reach = reach_view(camera.intrinsics)
         truth = annotate(
-            surface, snapshot, previous, camera, wanted | {reach}, self._threads, rows=rows
+            *(surface, snapshot, previous, camera, wanted | {reach}, self._threads),
+            rows=rows,
+            places=arrays.pop("places", None),
         )
         timings["annotate"] = time.perf_counter() - began
         arrays.update(truth)
@@ -169,8 +171,9 @@ class DrawingRenderer(ABC):
         -------
         arrays : dict of str to array
             ``surface`` (H, W, 2) float32, depth [m] and instance id; with a picture ``rgb``, its
-            radiance (see `PostPass.gathered`), and with supersampling perhaps ``samples``; other
-            views that are made already. The time of each stage is added to `timings`.
+            radiance (see `PostPass.gathered`), and with supersampling perhaps ``samples``; with
+            what deforms perhaps ``places``, see `annotate`; other views that are made already.
+            The time of each stage is added to `timings`.
         """
 
     @abstractmethod

@@ -9,14 +9,15 @@ import numpy as np
 
 from sailenv_ros.errors import NativeLibraryError
 from sailenv_ros.native.deformation_kernels import (
-    DeformingSurface,
+    bounding_sphere,
     move_clusters,
+    move_mesh,
     refit,
     skin,
-    surface_points,
 )
 from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, SurfaceMotions, move_points
-from sailenv_ros.native.render_types import CLUSTER
+from sailenv_ros.native.render_types import CLUSTER, TRIANGLE_PLACE
+from sailenv_ros.native.surface_kernels import DeformingSurface, SurfaceTree, surface_points
 from sailenv_ros.rays.triangle_tree import triangle_tree
 from sailenv_ros.types.camera import CameraIntrinsics
 from tests.unit.native.hostile_numbers import NUMBERS, THREADS, wild_floats
@@ -44,10 +45,25 @@ def drive_clusters() -> None:
     clusters = np.zeros(3, CLUSTER)
     clusters["first_index"], clusters["index_count"] = (0, 48, 96), (48, 48, 0)
     move_clusters(wild_floats(rng, 40, 3), indices, clusters)
-    for first, count in ((-3, 9), (90, 9), (0, -1), (2**62, 2**62)):
+    columns, vertices = np.zeros((3, 48), np.float32), np.zeros((50, 8), np.float32)
+    sources = rng.integers(50, size=40).astype(np.uint32)
+
+    def move() -> None:
+        given = wild_floats(rng, 50, 3), wild_floats(rng, 50, 3)
+        move_mesh(*given, sources, indices, columns, vertices, clusters)
+
+    move()
+    for first, count in ((-3, 9), (90, 9), (0, -1), (2**62, 2**62), (0, 96), (0, 99)):
         clusters["first_index"][1], clusters["index_count"][1] = first, count
         with contextlib.suppress(NativeLibraryError):
             move_clusters(wild_floats(rng, 40, 3), indices, clusters)
+        with contextlib.suppress(NativeLibraryError):
+            move()
+    sources[7] = 50
+    with contextlib.suppress(NativeLibraryError):
+        move()
+    for count in (0, 1, 17):
+        bounding_sphere(wild_floats(rng, 3, 17), count)
 
 
 def drive_surfaces() -> None:
@@ -55,16 +71,28 @@ def drive_surfaces() -> None:
     rng = np.random.default_rng(9)
     corners = rng.choice(np.array((0.0, 1e-300, 1.0, 0.5)), (500, 3, 3))
     tree = triangle_tree(corners)
-    targets = rng.choice(np.array(NUMBERS), corners.shape)
+    places = np.arange(1500, dtype=np.uint32).reshape(500, 3)
+    positions = corners.reshape(-1, 3).astype(np.float32)
+    targets = rng.choice(np.array(NUMBERS), positions.shape).astype(np.float32)
+    on_triangles = np.zeros((8, 9), TRIANGLE_PLACE)
+    on_triangles["vertices"] = rng.choice(
+        np.array((0, 1499, 1500, 2**32 - 1), np.uint32), (8, 9, 3)
+    )
+    on_triangles["weights"] = wild_floats(rng, 8, 9, 3)
     rows = np.zeros((8, 9), np.uint16)
     rows[::2] = 5
     for scale in ((1.0, 1.0, 1.0), (0.0, np.nan, np.inf)):
-        surface = DeformingSurface(5, scale, tree.record, corners, targets)
+        surface = DeformingSurface(5, scale, positions, targets, SurfaceTree(tree.record, places))
         for points in (wild_floats(rng, 8, 9, 3), rng.random((8, 9, 3)).astype(np.float32)):
             found = np.empty_like(points)
             surface_points(points, rows, [surface], found, relative=True, threads=THREADS[1])
-    places = np.arange(1500, dtype=np.uint32).reshape(500, 3)
-    positions = corners.reshape(-1, 3).astype(np.float32)
+            for known in (points, None):
+                surface_points(
+                    *(known, rows, [surface._replace(tree=None)], found),
+                    relative=False,
+                    threads=THREADS[1],
+                    places=on_triangles,
+                )
     refit(positions, places, tree.order, tree.nodes)
     for child in (-(2**31), 2**31 - 1, 1, -400):
         nodes = tree.nodes.copy()

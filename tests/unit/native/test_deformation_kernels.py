@@ -7,15 +7,18 @@ import pytest
 
 from sailenv_ros.errors import InvalidRequest, NativeLibraryError
 from sailenv_ros.native.deformation_kernels import (
+    bounding_sphere,
     move_clusters,
     refit,
     skin,
-    surface_points,
 )
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.native.render_types import CLUSTER
+from sailenv_ros.native.render_types import CLUSTER, TRIANGLE_PLACE
+from sailenv_ros.native.surface_kernels import surface_points
 from sailenv_ros.rays.opaque_models import opaque_model, surface_between
+from sailenv_ros.render.cpu.mesh_store import MeshStore
 from sailenv_ros.render.scene.clusters import clusters_of
+from sailenv_ros.render.scene.drawn_meshes import DrawnMesh
 from tests.support.tiny_scenes import model_of
 from tests.support.waving_sheet import sheet_mesh, waved
 
@@ -118,6 +121,61 @@ def test_a_refitted_tree_holds_its_triangles() -> None:
                 planes = nodes[number]["planes"][:, lane]
                 pending.append((child, planes[:3], planes[3:]))
     assert sorted(held) == list(range(len(corners)))
+
+
+def test_a_mesh_takes_the_vertices_of_an_instant() -> None:
+    shape = waved(SHEET, 0.4)
+    drawn = DrawnMesh(SHEET.parts[0].mesh, None, 0, owner=3)
+    mesh = MeshStore().get(drawn)
+    mesh.move(shape.meshes[0])
+    corners = mesh.corners[:, : mesh.corner_count].T
+    numbers, places = mesh.corner_indices.reshape(-1, 3), mesh.vertex_indices.reshape(-1, 3)
+    assert np.array_equal(corners[numbers], shape.meshes[0].positions[places])
+    assert np.array_equal(mesh.vertices[:, :3], shape.meshes[0].normals)
+    clusters = mesh.clusters.copy()
+    move_clusters(np.ascontiguousarray(corners), mesh.corner_indices, clusters)
+    assert clusters.tobytes() == mesh.clusters.tobytes()
+    away = np.linalg.norm(corners - mesh.sphere[:3], axis=1)
+    assert away.max() <= mesh.sphere[3] <= 1.001 * away.max() + 1e-5
+
+
+def test_a_sphere_bounds_the_corners_alone() -> None:
+    columns = np.full((3, 20), 1e9, np.float32)
+    columns[:, :12] = RANDOM.normal(size=(3, 12))
+    sphere = bounding_sphere(columns, 12)
+    low, high = columns[:, :12].min(axis=1), columns[:, :12].max(axis=1)
+    assert np.allclose(sphere[:3], 0.5 * (low.astype(np.float64) + high), atol=1e-12)
+    away = np.linalg.norm(columns[:, :12].T - sphere[:3], axis=1)
+    assert sphere[3] == pytest.approx(1.0001 * away.max() + 1e-6)
+    assert (bounding_sphere(columns, 0) == 0.0).all()
+
+
+def test_points_whose_triangles_are_known_go_with_them() -> None:
+    present, target = waved(SHEET, 0.2), waved(SHEET, 0.9)
+    surface = surface_between(7, (1.0, 2.0, 0.5), present, target, with_tree=False)
+    places = np.zeros((4, 5), TRIANGLE_PLACE)
+    triangles = SHEET.parts[0].mesh.triangles
+    places["vertices"] = triangles[RANDOM.integers(len(triangles), size=(4, 5))]
+    places["weights"] = RANDOM.dirichlet((1, 1, 1), size=(4, 5))
+    places["vertices"][3, 3, 1] = len(present.positions)
+    instance = np.full((4, 5), 7, np.uint16)
+    instance[0, 0] = 3
+    points = np.zeros((4, 5, 3), np.float32)
+    points[1, 2] = np.nan
+    moved = target.positions.astype(np.float64) - present.positions
+    expected = np.einsum(
+        "hwk,hwkj->hwj", places["weights"], moved.take(places["vertices"], axis=0, mode="clip")
+    ) * (1.0, 2.0, 0.5)
+    for given in (None, points):
+        found = np.full((4, 5, 3), 5.0, np.float32)
+        surface_points(given, instance, [surface], found, relative=True, threads=2, places=places)
+        unknown = {(3, 3)} if given is None else {(3, 3), (1, 2)}
+        assert set(zip(*np.nonzero(np.isnan(found[..., 0])), strict=True)) == unknown
+        assert (found[0, 0] == 5.0).all()
+        sure = (instance == 7) & ~np.isnan(found[..., 0])
+        assert np.abs(found - expected)[sure].max() < 1e-6
+    with pytest.raises(InvalidRequest, match="tree"):
+        surface_points(points, instance, [surface], found, relative=True, threads=1)
 
 
 def test_points_are_found_on_the_nearest_triangle() -> None:

@@ -54,5 +54,6 @@ SAILENV_KERNEL(structure_sizes)(int64_t* sizes) {
     sizes[6] = sizeof(sailenv::LensTable);
     sizes[7] = sizeof(sailenv::CubeFace);
     sizes[8] = sizeof(sailenv::LensTiles);
+    sizes[9] = sizeof(sailenv::TrianglePlace);
     return sailenv::STATUS_OK;
 }

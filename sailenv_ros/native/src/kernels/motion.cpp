@@ -1,9 +1,11 @@
 // Where the surface points of one picture are in another one, and points in other axes; see
 // native/motion_kernels.py. All in double precision.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "../threads.h"
+#include "id_runs.h"
 #include "lanes.h"
 #include "lens.h"
 #include "lens_models/table.h"
@@ -641,6 +643,25 @@ SAILENV_KERNEL(motion)(int64_t threads, const Motion* given) {
     return sailenv::STATUS_OK;
 }
 
+namespace {
+
+// A pixel's point in other axes.
+void transform_point(const Transform& in, const Pixels& pixels, int64_t row, int64_t at, int64_t u,
+                     int64_t v) {
+    const double z = in.depth[at];
+    const bool known = z - z == 0.0;
+    double origin[2], ray[3];
+    ray_of(pixels, at, u, v, origin, ray);
+    for (int64_t axis = 0; axis < 3; axis++) {
+        const double* r = in.transforms + 12 * row + 4 * axis;
+        const double shift = in.parallel != 0 ? r[0] * origin[0] + r[1] * origin[1] + r[3] : r[3];
+        const double place = z * (r[0] * ray[0] + r[1] * ray[1] + r[2] * ray[2]) + shift;
+        in.points[3 * at + axis] = known ? static_cast<float>(place) : NOT_A_NUMBER;
+    }
+}
+
+}  // namespace
+
 // Surface points in other axes: one affine transform for each instance.
 SAILENV_KERNEL(transform_points)(int64_t threads, const Transform* given) {
     const Transform in = *given;
@@ -648,22 +669,15 @@ SAILENV_KERNEL(transform_points)(int64_t threads, const Transform* given) {
     const Pixels pixels{*in.lens, in.rays, in.parallel != 0};
     sailenv::parallel_for(threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
         for (int64_t v = begin; v < end; v++) {
-            for (int64_t u = 0; u < in.width; u++) {
-                const int64_t at = v * in.width + u;
-                const double z = in.depth[at];
-                const uint16_t asked = in.row_of_instance[in.instance[at]];
-                const uint16_t row = asked < in.rows ? asked : uint16_t{0};
-                const bool there = row != 0 && z - z == 0.0;
-                double origin[2], ray[3];
-                ray_of(pixels, at, u, v, origin, ray);
-                for (int64_t axis = 0; axis < 3; axis++) {
-                    const double* r = in.transforms + 12 * row + 4 * axis;
-                    const double shift =
-                        in.parallel != 0 ? r[0] * origin[0] + r[1] * origin[1] + r[3] : r[3];
-                    const double place =
-                        z * (r[0] * ray[0] + r[1] * ray[1] + r[2] * ray[2]) + shift;
-                    in.points[3 * at + axis] = there ? static_cast<float>(place) : NOT_A_NUMBER;
+            const int64_t first = v * in.width, last = first + in.width;
+            for (int64_t at = first; at < last;) {
+                const uint16_t row = in.row_of_instance[in.instance[at]];
+                const int64_t run = sailenv::same_until(in.instance, at, last);
+                if (row == 0 || row >= in.rows) {
+                    std::fill(in.points + 3 * at, in.points + 3 * run, NOT_A_NUMBER);
+                    at = run;
                 }
+                for (; at < run; at++) transform_point(in, pixels, row, at, at - first, v);
             }
         }
     });

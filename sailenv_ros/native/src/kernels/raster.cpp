@@ -12,7 +12,6 @@
 namespace sailenv {
 namespace {
 
-constexpr int32_t CLUSTER_TRIANGLES = 32;  // at most; see render/clusters.py
 constexpr int64_t SEGMENT_CLUSTERS = 48;
 constexpr float LEAST_DEPTH_M = 1e-3f;  // corners nearer than that have no bounds on the screen
 constexpr double PARALLEL_EYE_M = 1e9;  // far enough that all is seen in one direction

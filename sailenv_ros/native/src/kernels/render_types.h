@@ -11,7 +11,9 @@
 
 namespace sailenv {
 
-// A group of neighbouring triangles that face alike; see render/clusters.py.
+constexpr int32_t CLUSTER_TRIANGLES = 32;  // at most; see render/scene/clusters.py
+
+// A group of neighbouring triangles that face alike.
 struct Cluster {
     int64_t first_index, index_count;
     double centre[3], radius;
@@ -53,7 +55,10 @@ struct Part {
     float chart[4];                   // offset and scale in the light map
     int32_t flags, instance, id;
     int32_t has_chart;
+    int32_t first_vertex;  // among those of a model that deforms; else `RIGID`
 };
+
+constexpr int32_t RIGID = -1;
 
 struct Instances {
     const double* world_from_body;  // (N, 4, 4)
@@ -148,6 +153,12 @@ struct View {
     const LensTable *table, *fine_table;
 };
 
+// Where on a triangle of a model that deforms a point is: vertices and their weights.
+struct TrianglePlace {
+    uint32_t vertices[3];
+    float weights[3];
+};
+
 constexpr int64_t MOST_ATTRIBUTES = 8;
 
 // What is wanted; null pointers for what is not.
@@ -155,6 +166,7 @@ struct Outputs {
     float* surface;                      // (height, width, 2): depth [m], instance id
     uint16_t* radiance;                  // halves (height, width, 4): exposed, share from around
     float* attributes[MOST_ATTRIBUTES];  // see surface_attributes.cpp
+    TrianglePlace* places;               // (height, width): written of what deforms
 };
 
 }  // namespace sailenv

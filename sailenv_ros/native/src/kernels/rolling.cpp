@@ -35,7 +35,7 @@ namespace sailenv {
 namespace {
 
 constexpr int64_t BAND_POSES = 32;
-constexpr int64_t MOST_INDICES = 96;  // of a cluster of the rasteriser
+constexpr int64_t MOST_INDICES = 3 * CLUSTER_TRIANGLES;
 constexpr int64_t STILL = -1;
 constexpr double LEAST_DEPTH_M = 2e-3;  // of corners that have a row; more than the rasteriser's
 

@@ -4,6 +4,8 @@
 // shade_gather.cpp, shade_material.cpp, shade_around.cpp, shade_reflections.cpp, shade_combine.cpp.
 #include "shade.h"
 
+#include <algorithm>
+
 #include "shade_chunk.h"
 
 namespace sailenv {
@@ -31,6 +33,37 @@ void write_gathered_surface(const Shading& s, const Chunk& c) {
         store(pairs + 2 * i + 8, SHUFFLE(depth, id, 4, 12, 5, 13, 6, 14, 7, 15));
     }
     memcpy(out, pairs, static_cast<size_t>(c.count) * 8);
+}
+
+// Where pixels are on the triangles of models that deform.
+void write_places(const Shading& s, const Chunk& c) {
+    const uint32_t* visible = s.visible + c.y * s.stride + c.x;
+    TrianglePlace* out = s.outputs->places + (c.y * s.width + c.x);
+    const LensTable* lens = s.table;
+    const int64_t begin = lens == nullptr ? 0 : c.y * lens->stride + c.x;
+    uint32_t last = NOTHING;
+    int32_t first = RIGID;
+    const Triangle* t = nullptr;
+    for (int32_t i = 0; i < c.count; i++) {
+        if (visible[i] != last) {
+            last = visible[i];
+            t = last == NOTHING ? nullptr : &s.set->triangles[last];
+            first = t == nullptr ? RIGID : s.parts->parts[t->part].first_vertex;
+        }
+        if (first == RIGID) continue;
+        const float x = lens == nullptr ? static_cast<float>(c.x + i) : lens->x[begin + i];
+        const float y = lens == nullptr ? static_cast<float>(c.y) : lens->y[begin + i];
+        float weights[3], sum = 0.0f;
+        for (int k = 0; k < 3; k++) {
+            const float* e = t->edge + 3 * k;
+            weights[k] = std::max(e[0] * x + (e[1] * y + e[2]), 0.0f);
+            sum += weights[k];
+        }
+        for (int k = 0; k < 3; k++) {
+            out[i].vertices[k] = static_cast<uint32_t>(first + t->vertex[k]);
+            out[i].weights[k] = weights[k] / sum;
+        }
+    }
 }
 
 void place_points(const Shading& s, Chunk& c) {
@@ -128,6 +161,7 @@ void shade_chunk(const Shading& s, Chunk& c) {
     const Outputs& wanted = *s.outputs;
     if (!wanted.radiance && !wants_attributes(wanted)) {
         if (wanted.surface != nullptr) write_surface(s, c.x, c.y, c.count);
+        if (wanted.places != nullptr) write_places(s, c);
         return;
     }
     if (s.table == nullptr) {
@@ -136,6 +170,7 @@ void shade_chunk(const Shading& s, Chunk& c) {
         gather_through_lens(s, c);
     }
     if (wanted.surface != nullptr) write_gathered_surface(s, c);
+    if (wanted.places != nullptr) write_places(s, c);
     set_rays(s, c);
     write_attributes(s, c);
     if (s.outputs->radiance == nullptr) return;
