@@ -59,6 +59,7 @@ ROS = [
     "ros-jazzy-std-msgs",
     "ros-jazzy-std-srvs",
     "ros-jazzy-stereo-msgs",
+    "ros-jazzy-visualization-msgs",
 ]
 # What only importing models and building the furniture pack need; reading packs does without.
 ASSETS = [

@@ -87,6 +87,7 @@ def test_topics_are_those_of_the_interface(probe: Probe) -> None:
             f"{NAMESPACE}/agent/detections_{n}d": f"vision_msgs/msg/Detection{n}DArray"
             for n in (2, 3)
         },
+        f"{NAMESPACE}/agent/skeletons": "visualization_msgs/msg/MarkerArray",
         f"{NAMESPACE}/agent/camera_info": "sensor_msgs/msg/CameraInfo",
         f"{NAMESPACE}/agent/frame_info": "sailenv_msgs/msg/FrameInfo",
         f"{NAMESPACE}/agent/pose": "geometry_msgs/msg/PoseStamped",

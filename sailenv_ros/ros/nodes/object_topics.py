@@ -1,7 +1,7 @@
 """Topics of what is known of a frame's objects, and its point cloud.
 
-`Frame` → `objects`, `objects/amodal`, `points`, `detections_2d` and `detections_3d`; each made only
-while somebody subscribes. Knows no simulation.
+`Frame` → `objects`, `objects/amodal`, `points`, `detections_2d`, `detections_3d` and `skeletons`;
+each made only while somebody subscribes. Knows no simulation.
 """
 
 from __future__ import annotations
@@ -15,10 +15,12 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
 from vision_msgs.msg import Detection2DArray, Detection3DArray
+from visualization_msgs.msg import MarkerArray
 
 from sailenv_msgs.msg import Objects
 from sailenv_msgs_py.object_truth_msgs import objects_to_msg
 from sailenv_msgs_py.point_clouds import point_cloud_to_msg
+from sailenv_msgs_py.skeleton_markers import skeleton_markers_to_msg
 from sailenv_msgs_py.vision_detections import detections_2d_to_msg, detections_3d_to_msg
 from sailenv_ros.errors import SailenvError, SimulationClosed
 from sailenv_ros.frame.frame import Frame
@@ -66,6 +68,11 @@ class ObjectTopics:
                 make_publisher(Detection3DArray, "detections_3d"),
                 ("instance",),
                 detections_3d_to_msg,
+            ),
+            _Topic(
+                make_publisher(MarkerArray, "skeletons"),
+                ("depth", "instance"),
+                skeleton_markers_to_msg,
             ),
         ]
 
