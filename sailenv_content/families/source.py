@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
 from collections.abc import Mapping
 from functools import lru_cache
 from types import MappingProxyType
 
 from sailenv_content.families.names import FORM, PieceName, has_form, parsed
+from sailenv_ros.assets.kept_assets import KeptAssets
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.types.model import Asset
 
-__all__ = ["MAX_KEPT", "FamilySource"]
+__all__ = ["FamilySource"]
 
-MAX_KEPT = 256
-"""Most pieces that are kept; the one that was not asked for for longest is dropped first."""
-
-_made: OrderedDict[PieceName, Asset] = OrderedDict()
-_lock = threading.Lock()
+_made: KeptAssets[PieceName] = KeptAssets()
 
 
 class FamilySource:
@@ -90,12 +85,4 @@ def _piece(name: PieceName) -> Asset:
     from sailenv_content.families.making import make_piece
     from sailenv_content.families.registry import family_named
 
-    with _lock:
-        found = _made.get(name)
-        if found is None:
-            found = make_piece(family_named(name.family), name).asset
-            _made[name] = found
-            while len(_made) > MAX_KEPT:
-                _made.popitem(last=False)
-        _made.move_to_end(name)
-        return found
+    return _made.get(name, lambda: make_piece(family_named(name.family), name).asset)

@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
-import threading
 from abc import ABC, abstractmethod
-from collections import OrderedDict
 from collections.abc import Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import ClassVar
 
+from sailenv_ros.assets.kept_assets import KeptAssets
 from sailenv_ros.errors import UnknownName
 from sailenv_ros.types.model import Asset
 
 __all__ = ["NamedAssets"]
 
-MAX_KEPT = 64
-"""Most assets that are kept; the one that was not asked for for longest is dropped first."""
-
 
 class NamedAssets(ABC):
     """An `OpenSource` whose assets all instances of a class share."""
 
-    _made: ClassVar[OrderedDict[str, Asset]]
-    _lock: ClassVar[threading.Lock]
+    _made: ClassVar[KeptAssets[str]]
 
     def __init_subclass__(cls) -> None:
-        cls._made, cls._lock = OrderedDict(), threading.Lock()
+        cls._made = KeptAssets()
 
     @property
     def display_names(self) -> Mapping[str, str]:
@@ -54,14 +50,7 @@ class NamedAssets(ABC):
         if problem is not None:
             raise problem
         self._prepare(name)
-        with self._lock:
-            found = self._made.get(name)
-            if found is None:
-                found = self._made[name] = self._make(name)
-                while len(self._made) > MAX_KEPT:
-                    self._made.popitem(last=False)
-            self._made.move_to_end(name)
-            return found
+        return self._made.get(name, partial(self._make, name))
 
     def _prepare(self, name: str) -> None:  # noqa: B027  # few need anything
         """Raise an AssetError if what they are made of is not here."""

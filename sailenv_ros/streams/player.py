@@ -21,6 +21,7 @@ from sailenv_ros.streams.course import Course
 from sailenv_ros.streams.plan import Place, StreamPlan
 from sailenv_ros.streams.staging import Stage
 from sailenv_ros.streams.state import DriftRecord
+from sailenv_ros.system.memory import give_back_freed_memory
 from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
@@ -74,6 +75,7 @@ class Player:
         self._earlier = truth or ("instance",)
         self._due = due_steps(course.rate, course.episode)
         self._library = SceneLibrary(baked_light=course.baked, drafts=False)
+        self._renderer: NativeRenderer | None = None
         self._core: SynchronousSimulation | None = None
         self._stage: Stage | None = None
         self._at: Place | None = None
@@ -119,14 +121,18 @@ class Player:
 
     def _begin(self, place: Place) -> None:
         """Begin an episode."""
+        if self._renderer is not None and self._at is not None and self._at.room != place.room:
+            self._renderer.forget()  # two rooms at once would take the most memory of all
+            give_back_freed_memory()
         self._at = self._drawn = None
         path = self._library.path(place.room)
         seed = self._plan.dice(place.episode, "simulation").whole((0, 2**31 - 1))
         things = self._course.randomise or None
         fresh = self._core is None
         if self._core is None:
+            self._renderer = NativeRenderer()
             self._core = SynchronousSimulation(
-                self._library, path, NativeRenderer(), mode="lockstep", real_time_factor=1.0,
+                self._library, path, self._renderer, mode="lockstep", real_time_factor=1.0,
                 seed=seed, paused=False,
             )  # fmt: skip
         if not fresh or things is not None:

@@ -180,7 +180,7 @@ def _kept(path: Path, arrays: Arrays) -> Arrays:
     return _read(path) or arrays
 
 
-def _packed(arrays: Arrays) -> bytes:
+def _packed(arrays: Arrays) -> bytearray:
     given = {name: np.asarray(array, order="C") for name, array in arrays.items()}
     # The places stand in the head, whose length they change: room for the longest is left.
     room = 256 + sum(160 + len(name) for name in given)
@@ -198,7 +198,7 @@ def _packed(arrays: Arrays) -> bytes:
         data[at : at + array.nbytes] = array.reshape(-1).view(np.uint8).data
     checksum = zlib.crc32(memoryview(data)[begin:])
     data[:begin] = MAGIC + checksum.to_bytes(4, "little") + len(head).to_bytes(8, "little")
-    return bytes(data)
+    return data
 
 
 def _tidy(folder: Path, written: int) -> None:

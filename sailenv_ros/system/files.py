@@ -53,14 +53,16 @@ _UNSUPPORTED = (errno.EINVAL, errno.ENOSYS, errno.ENOTSUP)
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
-def write_file(path: Path, data: bytes, *, overwrite: bool = True, durable: bool = True) -> None:
+def write_file(
+    path: Path, data: bytes | bytearray, *, overwrite: bool = True, durable: bool = True
+) -> None:
     """Write a file, all of it or nothing.
 
     Parameters
     ----------
     path : Path
         Its folder must be there.
-    data : bytes
+    data : bytes or bytearray
     overwrite : bool
         False leaves a file that is there, with a `FileExistsError`.
     durable : bool

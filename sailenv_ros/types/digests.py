@@ -1,11 +1,16 @@
-"""Hashes of models and skies, by their content: what is kept on disk for them is found by these."""
+"""Hashes of models and skies, by their content: what is kept on disk for them is found by these.
+
+Each is computed once, and forgotten with what it is of.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from functools import lru_cache
-from typing import Any
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +21,23 @@ from sailenv_ros.types.model import Material, Model
 __all__ = ["add_array", "appearance_digest", "model_digest", "sky_digest"]
 
 
-@lru_cache(maxsize=512)
+T = TypeVar("T")
+
+
+def _once(digest_of: Callable[[T], bytes]) -> Callable[[T], bytes]:
+    kept: WeakKeyDictionary[T, bytes] = WeakKeyDictionary()
+
+    @wraps(digest_of)
+    def known(one: T) -> bytes:
+        found = kept.get(one)
+        if found is None:
+            found = kept[one] = digest_of(one)
+        return found
+
+    return known
+
+
+@_once
 def model_digest(model: Model) -> bytes:
     """Hash what baked light depends on of a model; models never change."""
     digest = hashlib.blake2b(digest_size=16)
@@ -28,7 +49,7 @@ def model_digest(model: Model) -> bytes:
     return digest.digest()
 
 
-@lru_cache(maxsize=512)
+@_once
 def appearance_digest(model: Model) -> bytes:
     """Hash all that is seen of a model: what light depends on, and how its surfaces shine."""
     digest = hashlib.blake2b(model_digest(model), digest_size=16)
@@ -43,7 +64,7 @@ def appearance_digest(model: Model) -> bytes:
     return digest.digest()
 
 
-@lru_cache(maxsize=4)
+@_once
 def sky_digest(sky: SkyMap) -> bytes:
     """Hash a sky; skies never change."""
     digest = hashlib.blake2b(digest_size=16)

@@ -220,7 +220,7 @@ def light_named(name: str, lights: Iterable[Light]) -> Light:
     return by_name[name]
 
 
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SkyMap:
     """A picture of the whole sky; compared by identity: the same object is uploaded once.
 

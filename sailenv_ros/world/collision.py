@@ -86,6 +86,8 @@ def build_collision(
         part["collisionFramePosition"] = part.pop("position")
         part["collisionFrameOrientation"] = part.pop("orientation", _UNTURNED)
         part["shapeType"] = part.pop("type")
+        for key in part.keys() & {"vertices", "indices"}:
+            part[key] = _lists(part[key])
         return int(client.createCollisionShape(**part))
     if len(parts) > MAX_SHAPES:
         parts = _joined(client, parts, name)
@@ -122,7 +124,7 @@ def _box_hull(box: dict[str, Any], origin: Sequence[float], kind: int) -> dict[s
     signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
     turned = Pose(orientation_xyzw=box["orientation"]).matrix()[:3, :3]
     corners = signs * box["halfExtents"] @ turned.T + np.asarray(box["position"]) - origin
-    return {"type": kind, "vertices": _lists(corners), "position": origin}
+    return {"type": kind, "vertices": corners, "position": origin}
 
 
 def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str) -> dict[str, Any]:
@@ -154,7 +156,7 @@ def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str
             "position": _scaled(shape.centre_m, scale),
         }
     if isinstance(shape, ConvexShape):
-        points = _lists(shape.points * np.asarray(scale))
+        points = shape.points * np.asarray(scale)
         return {"type": constants.GEOM_MESH, "vertices": points, "position": [0.0, 0.0, 0.0]}
     return _triangles(constants, shape, scale)
 
@@ -162,8 +164,8 @@ def _part(client: BulletClient, shape: CollisionShape, scale: Vector3, name: str
 def _triangles(constants: Any, shape: TriangleShape, scale: Vector3) -> dict[str, Any]:
     return {
         "type": constants.GEOM_MESH,
-        "vertices": _lists(shape.positions * np.asarray(scale)),
-        "indices": _lists(shape.triangles.reshape(-1)),
+        "vertices": shape.positions * np.asarray(scale),
+        "indices": shape.triangles.reshape(-1),
         "flags": constants.GEOM_FORCE_CONCAVE_TRIMESH,
         "position": [0.0, 0.0, 0.0],
     }
@@ -213,7 +215,7 @@ def _hull_file(folder: Path, part: dict[str, Any], name: str) -> str:
     lines, first = [], 1
     for number, points in enumerate(part.get("hulls", [part["vertices"]])):
         lines.append(f"o {number}")
-        lines += ["v " + " ".join(f"{coordinate:.9g}" for coordinate in p) for p in points]
+        lines += ["v " + " ".join(f"{coordinate:.9g}" for coordinate in p) for p in points.tolist()]
         # A hull needs no faces, but the reader keeps only points that faces name.
         end = first + len(points)
         lines += [f"f {first} {corner} {corner + 1}" for corner in range(first + 1, end - 1)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -12,11 +14,13 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.drawing import structure_sizes
 from sailenv_ros.native.library import load_library, using_instruction_set
+from sailenv_ros.render.cpu.frame_light import _texels_in_use
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from sailenv_ros.types.digests import appearance_digest
 from sailenv_ros.types.geometry import Pose, look_at
-from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.lights import Environment, Light, SkyMap
 from sailenv_ros.types.snapshot import Observation
 from tests.render.test_picture import gallery
 from tests.support.hostile_scenes import hostile_scenes
@@ -32,6 +36,8 @@ from tests.support.tiny_scenes import (
     snapshot_of,
     wall_mesh,
 )
+
+GREY = (1.0, 1.0, 1.0)
 
 VIEWS = ("rgb", "depth", "category", "instance", "normals", "flow", "flow_valid", "occlusion")
 
@@ -51,6 +57,28 @@ def bytes_of(renderer: NativeRenderer, width: int, height: int) -> dict[str, byt
     past = replace(past, camera=replace(past.camera, intrinsics=camera.intrinsics))
     views = renderer.render(scene, past, camera, VIEWS).views
     return {name: views[name].tobytes() for name in VIEWS}
+
+
+def test_what_was_forgotten_is_freed_and_looks_the_same_again(native: NativeRenderer) -> None:
+    """Also what is worked out of models and skies, which goes with them."""
+    plain = bytes_of(native, 64, 48)
+    model = model_of(wall_mesh(), base_colour_texture=checker())
+    digest, left = appearance_digest(model), weakref.ref(model)
+    sky = SkyMap(radiance=np.ones((60, 120, 3), np.float16), zenith=GREY, horizon=GREY, ground=GREY)
+    scene = snapshot_of(
+        [Thing(model, Pose((2.0, 0.0, 0.0)))],
+        environment=Environment(sky=sky, sky_map="grey", sky_blend=False),
+    )
+    native.render(scene, None, camera_at(), ("rgb",))
+    assert (sky, None) in _texels_in_use
+    del model, scene
+    native.forget()
+    gc.collect()
+    assert left() is None
+    assert (sky, None) not in _texels_in_use
+    assert native.part_table.contents is None
+    assert bytes_of(native, 64, 48) == plain
+    assert appearance_digest(model_of(wall_mesh(), base_colour_texture=checker())) == digest
 
 
 def test_what_is_preloaded_before_looks_the_same(native: NativeRenderer) -> None:

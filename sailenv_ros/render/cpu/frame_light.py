@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from functools import lru_cache, partial
+from functools import partial
 from typing import TypeAlias
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +49,11 @@ Radiance: TypeAlias = Callable[
 ]
 """``radiance(camera, light, only, glows)`` returns (H, W, 3): a picture of some instances; what
 glows does so if it is told to."""
+
+_texels_in_use: WeakValueDictionary[tuple[SkyMap, float | None], NDArray[np.float16]] = (
+    WeakValueDictionary()
+)
+"""Of skies that something shows: 16 MB each."""
 
 
 class ShadowMap:
@@ -213,6 +219,7 @@ class FrameLight:
         if environment.sky is not None:
             wanted = environment.sky, seen_exposure(environment)
             if self._sky is None or self._sky[0] != wanted:
+                self._sky = None  # two of them are never needed
                 self._sky = wanted, _sky_texels(*wanted)
             _set_sky(light, self._sky[1], environment.outside_factor)
         return light
@@ -319,12 +326,13 @@ def _set_sky(light: NDArray[np.void], texels: NDArray[np.float16], factor: float
     light["sky_height"], light["sky_width"] = len(texels), texels.shape[1] - 1
 
 
-@lru_cache(maxsize=2)
 def _sky_texels(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
     """Return (H, W + 1, 4) of `seen_sky`: the first column is repeated behind the last."""
-    seen = seen_sky(sky, exposure)
-    height, width, _ = seen.shape
-    texels = np.zeros((height, width + 1, 4), np.float16)
-    texels[:, :width, :3] = seen
-    texels[:, width] = texels[:, 0]
+    texels = _texels_in_use.get((sky, exposure))
+    if texels is None:
+        seen = seen_sky(sky, exposure)
+        height, width, _ = seen.shape
+        texels = _texels_in_use[sky, exposure] = np.zeros((height, width + 1, 4), np.float16)
+        texels[:, :width, :3] = seen
+        texels[:, width] = texels[:, 0]
     return texels

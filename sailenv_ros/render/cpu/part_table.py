@@ -86,6 +86,9 @@ class PartTable:
     ) -> None:
         self._meshes = MeshStore() if meshes is None else meshes
         self._textures = TextureStore() if textures is None else textures
+        self._empty()
+
+    def _empty(self) -> None:
         self._models: dict[tuple[int, int, int], _ModelParts] = {}
         self._deforming: list[tuple[int, int, list[DrawnMesh]]] = []
         self._moving: list[_MovingMesh] | None = []
@@ -96,6 +99,12 @@ class PartTable:
         self._baked_poses = np.zeros((0, 4, 4))
         self._keys: list[tuple[object, ...]] = []
         self._casting: dict[tuple[int, tuple[float, ...]], bool] = {}
+
+    def forget(self) -> None:
+        """Free what was made of the contents that were shown, and what the stores keep of them."""
+        self._empty()
+        self._meshes.trim(())
+        self._textures.trim(())
 
     def show(self, contents: SceneContents) -> None:
         """Bring the tables up to date."""

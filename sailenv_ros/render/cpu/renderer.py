@@ -22,7 +22,7 @@ from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.picture.annotate import POINT_VIEWS
 from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
-from sailenv_ros.render.scene.flat_mirrors import Window
+from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, Window
 from sailenv_ros.render.scene.opening_window import OpeningWindows
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import Share
@@ -68,6 +68,7 @@ class NativeRenderer(DrawingRenderer):
         super().__init__(threads)
         self._drawing = Drawing(self._threads)
         self._table = PartTable() if table is None else table
+        self._reflections = reflections
         self._openings = OpeningWindows()
         self._light = FrameLight(self._drawing, self._threads, reflections)
 
@@ -98,6 +99,12 @@ class NativeRenderer(DrawingRenderer):
         environment = contents.environment
         if environment.sky is not None:
             seen_sky(environment.sky, seen_exposure(environment))
+
+    def forget(self) -> None:
+        """Free what was made of the scene that was shown; it is made again if that comes again."""
+        self._table.forget()
+        self._openings, self._mirrors = OpeningWindows(), FlatMirrors()
+        self._light = FrameLight(self._drawing, self._threads, self._reflections)
 
     def _at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
         return self._table.at_baked_pose(snapshot)

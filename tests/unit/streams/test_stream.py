@@ -16,9 +16,12 @@ import pytest
 
 import sailenv_ros.streams as streams
 from sailenv_ros.errors import InvalidRequest, SceneError, UnknownName
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.streams import Course, Stream, StreamFrame
 from sailenv_ros.streams.plan import HABITS, StreamPlan
 from sailenv_ros.streams.player import Player
+from sailenv_ros.world.world import World
 
 ORDER = (29, 3, 4, 17, 16, 5, 98, 12, 12, 0, 30)
 """Ahead, back, across episodes and rooms, twice the same."""
@@ -125,6 +128,36 @@ def test_parts_of_a_stream_share_its_simulation(
     del part
     gc.collect()
     assert len(set(closed)) == 2
+
+
+def test_a_room_that_was_left_is_not_drawn_beside_the_next(
+    course: Course, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While an episode's world is built, the renderer holds at most what that shows."""
+    shown: list[tuple[str, str | None]] = []
+    renderers: list[NativeRenderer] = []
+
+    class Noted(NativeRenderer):
+        def __init__(self) -> None:
+            super().__init__()
+            renderers.append(self)
+
+    built = SceneLibrary.build
+
+    def build(library: SceneLibrary, scene: str | Path, *given: Any, **more: Any) -> World:
+        kept = renderers[-1].part_table.contents
+        world = built(library, scene, *given, **more)
+        shown.append((Path(scene).stem, None if kept is None else kept.scene))
+        return world
+
+    monkeypatch.setattr("sailenv_ros.streams.player.NativeRenderer", Noted)
+    monkeypatch.setattr(SceneLibrary, "build", build)
+    with streams.open(course, seed=5, length=100) as one:
+        frames = [one[number] for number in range(1, 48, 6)]
+    assert len({frame.room for frame in frames}) == 2
+    assert len(shown) == 8
+    assert {kept for _, kept in shown} > {None}
+    assert all(kept in (None, room) for room, kept in shown)
 
 
 def test_seeds_make_different_streams(course: Course, in_order: dict[int, str]) -> None:

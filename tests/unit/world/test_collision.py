@@ -132,19 +132,31 @@ def test_shapes_that_come_again_keep_no_more_memory() -> None:
         positions=np.random.default_rng(1).normal(size=(300, 3)),
         triangles=np.arange(300, dtype=np.int32).reshape(-1, 3),
     )
-    _hits([hollow], [])
+    # One set of lists alone is 50 kB.
+    assert _grown([[hollow]] * 21) < 25_000
+
+
+def test_hulls_of_compounds_that_do_not_come_again_keep_no_memory() -> None:
+    """PyBullet reads them from files; the lists of each are 25 kB."""
+    dice = np.random.default_rng(2)
+    hulls = [ConvexShape(points=dice.normal(size=(100, 3))) for _ in range(21)]
+    assert _grown([[SLAB, hull] for hull in hulls]) < 25_000
+
+
+def _grown(bodies: list[list[CollisionShape]]) -> int:
+    """Return what Python holds more after all than after the first [B]."""
+    _hits(bodies[0], [])
     gc.collect()
     tracemalloc.start()
     try:
         before, _ = tracemalloc.get_traced_memory()
-        for _ in range(20):
-            _hits([hollow], [])
+        for shapes in bodies[1:]:
+            _hits(shapes, [])
         gc.collect()
         after, _ = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    # One set of lists alone is 50 kB.
-    assert after - before < 25_000
+    return after - before
 
 
 def _files(client: BulletClient, monkeypatch: pytest.MonkeyPatch) -> list[Path]:

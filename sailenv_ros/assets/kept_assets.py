@@ -1,0 +1,40 @@
+"""Assets that are made when they are asked for: kept while they are in use, and some beside."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from typing import Generic, TypeVar
+from weakref import WeakValueDictionary
+
+from sailenv_ros.types.model import Asset
+
+__all__ = ["KeptAssets"]
+
+MAX_KEPT = 64
+"""Most assets that are kept though nothing uses them: of two furnished rooms or more. The one that
+was not asked for for longest is dropped first."""
+
+K = TypeVar("K", bound=Hashable)
+
+
+class KeptAssets(Generic[K]):
+    """Assets by what they are made of; may be used from several threads."""
+
+    def __init__(self) -> None:
+        self._in_use: WeakValueDictionary[K, Asset] = WeakValueDictionary()
+        self._last: OrderedDict[K, Asset] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def get(self, key: K, make: Callable[[], Asset]) -> Asset:
+        """Return an asset; the same object while it is kept. Errors of `make` go through."""
+        with self._lock:
+            found = self._in_use.get(key)
+            if found is None:
+                found = self._in_use[key] = make()
+            self._last[key] = found
+            self._last.move_to_end(key)
+            while len(self._last) > MAX_KEPT:
+                self._last.popitem(last=False)
+            return found
