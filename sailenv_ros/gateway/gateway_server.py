@@ -20,6 +20,7 @@ from sailenv_ros.gateway.session import Session
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.system.connection_gate import BACKLOG, ConnectionGate, RareWarning
 from sailenv_ros.system.loop_server import LoopServer
+from sailenv_ros.types.agents import MAX_AGENTS
 
 __all__ = ["DEFAULT_HOST", "DEFAULT_PORT", "GatewayServer"]
 
@@ -30,6 +31,9 @@ DEFAULT_PORT = 8085
 
 WORKERS = 2
 """Threads that write and compress pictures."""
+
+NUMBERS = 4 * MAX_AGENTS
+"""Numbers of clients, which come again: Fast DDS never forgets the topics of a name."""
 
 
 class GatewayServer(LoopServer):
@@ -70,7 +74,7 @@ class GatewayServer(LoopServer):
         self._simulation = simulation
         self._protocol = protocol
         self._limits = limits or GatewayLimits()
-        self._ids = itertools.count(1)
+        self._ids = itertools.cycle(range(1, NUMBERS + 1))
         self._gate = ConnectionGate("gateway", self._limits.connections, self._limits.per_address)
         self._silent = RareWarning(_log)
         self._connections: dict[ClientConnection, asyncio.Task[None] | None] = {}

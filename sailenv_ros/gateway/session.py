@@ -44,7 +44,7 @@ class Session:
     info : callable
         Gives the scene as it was announced last.
     next_id : callable
-        Gives a number that no other session of the same simulator has.
+        Gives a number to try: it is another's where there is an agent of its name.
     """
 
     def __init__(self, info: Callable[[], SceneInfo], next_id: Callable[[], int]) -> None:

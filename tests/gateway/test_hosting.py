@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import pytest
 
 from sailenv_ros.errors import AddressInUse, InvalidRequest, UnknownName
-from sailenv_ros.gateway import GatewayServer
+from sailenv_ros.gateway import GatewayServer, gateway_server
 from sailenv_ros.simulation import Simulation
 from tests.support.sailenv_client import original_client
 
@@ -102,3 +102,20 @@ def test_a_gateway_ends_though_clients_are_there(blank_simulation: Simulation) -
     # Requests are done in their order: this one comes after the agent's removal.
     blank_simulation.spawnable_display_names()
     assert [a.name for a in blank_simulation.info.agents if a.name.startswith("client_")] == []
+
+
+def test_numbers_of_clients_come_again(
+    blank_simulation: Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So do the names of their topics; a number that is in use is passed over."""
+    monkeypatch.setattr(gateway_server, "NUMBERS", 3)
+    found = []
+    with (
+        GatewayServer(blank_simulation, port=0) as server,
+        original_client(server.port, width=32, height=24) as stays,
+    ):
+        for _ in range(4):
+            with original_client(server.port, width=32, height=24) as client:
+                found.append(client.id)
+        assert stays.id == 1
+    assert found == [2, 3, 2, 3]

@@ -12,6 +12,8 @@ import pytest
 
 from sailenv_ros import Agent
 from sailenv_ros.errors import NameTaken
+from sailenv_ros.system import client_locks
+from sailenv_ros.system.process_locks import private_folder
 from sailenv_ros.types.agents import MAX_AGENTS, AgentSpec
 from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
@@ -124,3 +126,29 @@ def test_an_end_in_order_is_told_at_once(watcher: Agent) -> None:
     with Agent(width=32, height=24, namespace=NAMESPACE, name="orderly"):
         until(lambda: "orderly" in names(watcher), "the agent to be announced")
     until(lambda: "orderly" not in names(watcher), "its end to be announced", 5.0)
+
+
+def test_names_that_nobody_asked_for_come_again(
+    watcher: Agent, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Fast DDS keeps every topic's name; one that another agent has got is not used."""
+    suffix = f".{os.getpid()}_agent"
+    monkeypatch.setattr(client_locks, "MOST_NAMES", 2)
+    monkeypatch.setattr(client_locks, "_NAMES", suffix)
+    small = {"width": 32, "height": 24, "namespace": NAMESPACE}
+    try:
+        found = []
+        for _ in range(4):
+            with Agent(**small) as agent:
+                assert [agent.get_frame()["sequence"] for _ in range(2)] == [1, 2]
+                found.append(agent.id)
+        assert found[2:] == found[:2]
+        assert len(set(found)) == 2
+        watcher.register_agent(AgentSpec(name=found[0], rate_hz=0.0))
+        with Agent(**small) as agent:
+            assert agent.id not in found
+            assert agent.get_frame()["sequence"] == 1
+        watcher.delete_agent(found[0])
+    finally:
+        for number in range(2):
+            (private_folder() / f"{number}{suffix}").unlink(missing_ok=True)

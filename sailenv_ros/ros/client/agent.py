@@ -7,7 +7,6 @@ z up) [m], angles [deg].
 
 from __future__ import annotations
 
-import uuid
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from typing import Any
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.ros.client.recorded import RecordedAgent
 from sailenv_ros.ros.client.registered_agent import RegisteredAgent
+from sailenv_ros.system.client_locks import unique_agent_name
 from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.listed_views import Views, listed_views
@@ -122,7 +122,7 @@ depth_frame_active : bool
             accepted = "left out where sizes, angles and distances of the camera are given"
             raise InvalidRequest("intrinsics", intrinsics.distortion_model, accepted)
         spec = AgentSpec(
-            name=name or f"agent_{uuid.uuid4().hex[:10]}",
+            name=name or unique_agent_name(),
             intrinsics=lens if intrinsics is None else intrinsics,
             depth_range_m=depth_range_m,
             rate_hz=0.0,
@@ -133,6 +133,7 @@ depth_frame_active : bool
         )
         super().__init__(
             spec,
+            any_name=not name,
             timeout_s=timeout_s,
             namespace=namespace,
             domain_id=domain_id,

@@ -78,6 +78,7 @@ class FrameClient:
     def begin(self, spec: AgentSpec, timeout_s: float) -> None:
         """Wait for the topics of the agent, which has been registered."""
         self._spec = spec
+        self._topics.begin(self._remote.revision)
         self._topics.await_publishers(timeout_s)
 
     def capture(self, views: tuple[str, ...] | None, timeout_s: float) -> Frame:

@@ -43,6 +43,7 @@ class AgentTopics:
         self._changed = threading.Condition()
         self._newest: Bundle | None = None
         self._last_arrival_s = 0.0
+        self._first_revision: int | None = None
         self._subscriptions: dict[str, Any] = {}
         self._subscribe("frame_info", FrameInfo, self._take_info)
         self.add_views(views)
@@ -63,6 +64,15 @@ class AgentTopics:
         for view in more:
             self._subscribe(view, Image, self._taker(view))
         return bool(more)
+
+    def begin(self, revision: int) -> None:
+        """Take what was sent at that revision of the scene or later.
+
+        It has the agent; what came before is of one that had its name.
+        """
+        with self._changed:
+            self._first_revision = revision
+        self.clear()
 
     def await_publishers(self, timeout_s: float) -> None:
         """Wait until every topic has a publisher."""
@@ -173,6 +183,8 @@ class AgentTopics:
         stamp_ns = ns_from_stamp(msg.header.stamp)
         views = tuple(msg.views)
         with self._changed:
+            if self._first_revision is None or msg.revision < self._first_revision:
+                return
             sent_ns = about["source_timestamp"]
             self._deliver(self._sync.add_info(msg.sequence, stamp_ns, views, sent_ns, msg))
 

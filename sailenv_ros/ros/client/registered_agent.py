@@ -16,12 +16,13 @@ from typing import Any, TypeVar
 from weakref import WeakSet
 
 from sailenv_msgs_py.services import SERVICES
-from sailenv_ros.errors import InvalidRequest, SailenvError, SimulationClosed
+from sailenv_ros.errors import InvalidRequest, NameTaken, SailenvError, SimulationClosed
 from sailenv_ros.frame.html import scene_html
 from sailenv_ros.ros.client.frame_client import FrameClient
 from sailenv_ros.ros.client.remote import RemoteSimulator
 from sailenv_ros.ros.client.rig_client import RigClient
 from sailenv_ros.simulation.operations import Operation, Operations
+from sailenv_ros.system.client_locks import AgentName, unique_agent_name
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.scene_info import SceneInfo
@@ -53,6 +54,8 @@ class RegisteredAgent(Operations):
     Parameters
     ----------
     spec : AgentSpec
+    any_name : bool
+        True gives it a name that comes again, as nobody asked for one.
     timeout_s, namespace, domain_id, simulator, start_timeout_s
         As of `Agent`.
     """
@@ -61,6 +64,7 @@ class RegisteredAgent(Operations):
         self,
         spec: AgentSpec,
         *,
+        any_name: bool,
         timeout_s: float,
         namespace: str,
         domain_id: int | None,
@@ -68,6 +72,7 @@ class RegisteredAgent(Operations):
         start_timeout_s: float,
     ) -> None:
         self._spec = spec
+        self._lent: AgentName | None = None
         self._timeout_s = timeout_s
         self._lock = threading.RLock()
         self._frames: FrameClient | None = None
@@ -83,6 +88,9 @@ class RegisteredAgent(Operations):
         self._closed = False
         _open.add(self)
         try:
+            if any_name:
+                self._lent = AgentName()
+                self._spec = replace(spec, name=self._lent.text)
             self.register()
         except BaseException:
             self.close()
@@ -110,20 +118,14 @@ class RegisteredAgent(Operations):
         with self._lock:
             if self._frames is not None:
                 return
-            cameras = self._spec.cameras
-            frames = FrameClient(self._remote, self._spec)
-            rig = None if cameras is None else RigClient(self._remote, self._spec)
             try:
-                self._spec = replace(self.register_agent(self._spec), cameras=cameras)
-                frames.begin(self._spec, self._timeout_s)
-                if rig is not None:
-                    rig.begin(self._timeout_s)
-            except BaseException:
-                frames.close()
-                if rig is not None:
-                    rig.close()
-                raise
-            self._frames, self._rig = frames, rig
+                self._frames, self._rig = self._registered()
+            except NameTaken:
+                if self._lent is None:
+                    raise
+                # Of an Agent that could not remove it, or of a host that is not told apart.
+                self._spec = replace(self._spec, name=unique_agent_name())
+                self._frames, self._rig = self._registered()
 
     def delete(self) -> None:
         """Remove the agent from the simulator; a second call does nothing."""
@@ -178,6 +180,8 @@ class RegisteredAgent(Operations):
                 pass  # the simulator is gone, and with it the agent
             finally:
                 self._remote.close()
+                if self._lent is not None:
+                    self._lent.release()
 
     def __del__(self) -> None:
         """Give the place in the simulator back where nobody can use it any more."""
@@ -252,6 +256,23 @@ class RegisteredAgent(Operations):
         return self._recaptured + own + (0 if self._rig is None else self._rig.recaptured)
 
     # -- inside ----------------------------------------------------------------------------
+
+    def _registered(self) -> tuple[FrameClient, RigClient | None]:
+        """Register it; return what receives its frames."""
+        cameras = self._spec.cameras
+        frames = FrameClient(self._remote, self._spec)
+        rig = None if cameras is None else RigClient(self._remote, self._spec)
+        try:
+            self._spec = replace(self.register_agent(self._spec), cameras=cameras)
+            frames.begin(self._spec, self._timeout_s)
+            if rig is not None:
+                rig.begin(self._timeout_s)
+        except BaseException:
+            frames.close()
+            if rig is not None:
+                rig.close()
+            raise
+        return frames, rig
 
     @property
     def _own_frames(self) -> FrameClient:

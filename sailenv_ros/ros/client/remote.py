@@ -33,6 +33,11 @@ class RemoteSimulator:
         Parameters of the simulator node if one has to be started.
     start_timeout_s : float
         Deadline of the simulator's start [s].
+
+    Attributes
+    ----------
+    revision : int
+        Of the scene, as the last operation left it.
     """
 
     def __init__(
@@ -48,6 +53,7 @@ class RemoteSimulator:
             acquire, _domain(domain_id), name, dict(simulator or {}), start_timeout_s
         )
         self._link = self._acquire()
+        self.revision = 0
 
     @property
     def connection(self) -> Connection:
@@ -82,6 +88,7 @@ class RemoteSimulator:
         request = service.request(arguments, self.info)
         response = self.connection.call(service.type, name, request, timeout_s)
         result = service.result(response)
+        self.revision = response.revision
         self.connection.await_revision(response.revision, max(0.0, deadline - time.monotonic()))
         return result
 

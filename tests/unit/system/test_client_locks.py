@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from sailenv_ros.system.client_locks import ClientLock, client_lives
+from sailenv_ros.system import client_locks
+from sailenv_ros.system.client_locks import AgentName, ClientLock, client_lives
 from sailenv_ros.system.process_locks import private_folder
 from tests.support.waiting import until
 
@@ -76,3 +77,57 @@ def test_what_a_killed_client_leaves_is_removed_by_a_later_one() -> None:
     os.utime(left, (0, 0))
     with ClientLock("b"):
         assert not left.exists()
+
+
+TAKE = """
+import os, sys
+from sailenv_ros.system.client_locks import AgentName
+name = AgentName()
+if "fork" in sys.argv and not os.fork():
+    sys.stdin.read()
+print(name.text, flush=True)
+sys.stdin.read()
+"""
+
+
+def test_names_of_agents_come_again_but_not_soon() -> None:
+    """The one that was let go of longest ago is next."""
+    held = AgentName()
+    found = []
+    for _ in range(3 * client_locks.MOST_NAMES):
+        name = AgentName()
+        found.append(name.text)
+        name.release()
+    around = client_locks.MOST_NAMES - 1
+    assert len(set(found)) == around
+    assert held.text not in found
+    assert found[around:] == found[:-around]
+
+
+def test_where_all_names_are_in_use_there_are_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(client_locks, "MOST_NAMES", 2)
+    held = [AgentName() for _ in range(4)]
+    assert len({name.text for name in held}) == 4
+    held[1].release()
+    assert AgentName().text == held[1].text
+
+
+@pytest.mark.parametrize("arguments", [(), ("fork",)])
+def test_a_name_is_one_process_s_and_free_when_that_was_killed(
+    arguments: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A process that was forked of it does not hold it."""
+    monkeypatch.setattr(client_locks, "MOST_NAMES", 1)
+    with subprocess.Popen(
+        [sys.executable, "-c", TAKE, *arguments],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as holder:
+        assert holder.stdout is not None
+        taken = holder.stdout.readline().strip()
+        assert taken.endswith("_0")
+        assert AgentName().text != taken
+        holder.kill()
+        until(lambda: holder.poll() is not None, "the end of the process", 10.0)
+        assert AgentName().text == taken
