@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 
 import sailenv_ros.streams as streams
-from benchmarks.judge_streams import digest_of, forget_peak, memory_mib
+from benchmarks.judge_streams import WARM_FRAMES, digest_of, forget_peak, memory_mib
 from sailenv_ros.dataset.streams.endless import LARGEST_KEPT_BYTES
 from sailenv_ros.dataset.worker_pool import WorkerPool
 from sailenv_ros.streams.course import Course, load_course
@@ -39,9 +39,6 @@ from sailenv_ros.system.memory import keep_freed_memory
 PART, CHECKED = 500, 200
 
 POLL_S = 0.5
-WARM_FRAMES = 10_000
-"""Memory is compared with that after so many frames of the stream."""
-
 WINDOW = 100_000
 """Frames in which the greatest memory is looked for: all rooms are visited."""
 
@@ -217,7 +214,7 @@ def _tell_memory(lines: Sequence[dict[str, Any]]) -> None:
     for process in sorted({line["process"] for line in lines}):
         own = [line for line in lines if line["process"] == process]
         own.sort(key=lambda line: line["part"])
-        each = WINDOW // PART // 2
+        each = WINDOW // PART  # a process makes parts that follow each other
         for key, words in (("own_mib", "of its own after a part"), ("most_mib", "with files")):
             most = [
                 round(max(line[key] for line in own[place : place + each]))

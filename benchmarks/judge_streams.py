@@ -5,7 +5,7 @@
     python benchmarks/judge_streams.py avalanche [--experiences N]
     python benchmarks/judge_streams.py drift [--seed N] [--habit NAME]
     python benchmarks/judge_streams.py still [--frames N] [--seed N] [--habit NAME]
-    python benchmarks/judge_streams.py memory [--frames N] [--seed N]
+    python benchmarks/judge_streams.py memory [--frames N] [--seed N] [--episodes N]
 
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
@@ -14,7 +14,8 @@ shuffled. `avalanche` trains its `Naive` on experiences that are made when they 
 that walks, or stands, in one room, one drift at a time, which begins at a frame. `still` does so
 without any drift. ADWIN makes a test each 32 frames; its `delta`, the share of false alarms, is
 divided by the number of tests in 100,000 frames (Bonferroni). `memory` makes two frames of each
-episode of `home`, and tells the memory of the process after each room.
+episode of `home`, or of the first few in each room, and tells the memory of the process after each
+room, and the most of each tour through all rooms that begins after 10,000 frames.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -26,6 +27,7 @@ import hashlib
 import multiprocessing
 import resource
 import tempfile
+import threading
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -44,6 +46,9 @@ FIRST = 812_000
 """Where the parts begin that are looked at: all drifts of `home` are under way."""
 
 ONSET, BEFORE, AFTER = 20_000, 5_000, 1_500
+WARM_FRAMES = 10_000
+"""Memory is compared with that after so many frames of a stream."""
+
 WITHIN = 1_000
 """A drift is found if ADWIN tells it within so many frames of its onset."""
 
@@ -106,6 +111,7 @@ def main() -> None:
     still = actions.add_parser("still")
     memory = actions.add_parser("memory")
     memory.add_argument("--frames", type=int, default=410_000)
+    memory.add_argument("--episodes", type=int, default=8)
     for action in (drift, still, memory):
         action.add_argument("--seed", type=int, default=SEED)
     for action in (drift, still):
@@ -123,7 +129,7 @@ def main() -> None:
     elif options.action == "still":
         judge_stillness(options.frames, options.seed, options.habit)
     else:
-        measure_memory(options.frames, options.seed)
+        measure_memory(options.frames, options.seed, options.episodes)
 
 
 def judge_seeking(count: int) -> None:
@@ -252,20 +258,53 @@ def judge_stillness(count: int, seed: int, habit: str) -> None:
         print(f"{end} frames without drift: {found}", flush=True)
 
 
-def measure_memory(count: int, seed: int) -> None:
+def measure_memory(count: int, seed: int, episodes: int) -> None:
     """Print the memory of this process after each room, of whose frames few are made."""
     keep_freed_memory(LARGEST_KEPT_BYTES)
-    with streams.open("home", seed=seed) as stream:
-        episode = stream.course.episode
-        for first in range(0, count, episode):
-            if first % (episode * stream.course.visit) == 0:
-                forget_peak()
-            for number in (first, first + 2):
-                stream[number]
-            if (first + episode) % (episode * stream.course.visit) == 0:
-                own, all_mib, most = (memory_mib(one) for one in ("RssAnon", "VmRSS", "VmHWM"))
-                told = f"{own:.0f} MiB of its own, {all_mib:.0f} with files, {most:.0f} at most"
-                print(f"frame {first + episode}: {told}", flush=True)
+    tours: dict[int, tuple[float, float]] = {}
+    with streams.open("home", seed=seed) as stream, _MostOwn() as most_own:
+        course = stream.course
+        stay = course.episode * course.visit
+        for entered in range(0, count, stay):
+            forget_peak()
+            for first in range(entered, entered + stay, course.episode)[:episodes]:
+                for number in (first, first + 2):
+                    stream[number]
+            own, all_mib, most = (memory_mib(one) for one in ("RssAnon", "VmRSS", "VmHWM"))
+            own_most = most_own.taken()
+            told = f"{own:.0f} MiB of its own, {own_most:.0f} at most"
+            print(f"frame {entered + stay}: {told}; {all_mib:.0f} with files, {most:.0f} at most")
+            if entered >= WARM_FRAMES:
+                tour = (entered - WARM_FRAMES) // (stay * len(stream.rooms))
+                before = tours.get(tour, (0.0, 0.0))
+                tours[tour] = max(own, before[0]), max(own_most, before[1])
+                words = ", ".join(f"{after:.0f} / {most:.0f}" for after, most in tours.values())
+                print(f"most of its own after a room / ever, by tour: {words} MiB", flush=True)
+
+
+class _MostOwn:
+    """The most memory of its own that this process has had; a context manager."""
+
+    def __init__(self) -> None:
+        self._most, self._ends = 0.0, threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+
+    def _watch(self) -> None:
+        while not self._ends.wait(0.01):
+            self._most = max(self._most, memory_mib("RssAnon"))
+
+    def taken(self) -> float:
+        """Return the most since this was asked before [MiB]."""
+        most, self._most = self._most, 0.0
+        return most
+
+    def __enter__(self) -> _MostOwn:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self._ends.set()
+        self._thread.join()
 
 
 def memory_mib(entry: str) -> float:
