@@ -1,19 +1,21 @@
 """Change scenes, and let agents come and go, for hours; memory and whatever is opened stays flat.
 
     python benchmarks/soak.py [--minutes M] [--pause S] [--node] [--scenes NAME ...]
+    python benchmarks/soak.py --rooms 0 50      # each generated room once, the first scene between
 
 Every round changes the scene, registers agents, renders, spawns and removes: in this process, or
 with `--node` in a node of its own, through ROS, beside a SAILenv client and a page that come and
-go. Prints resident memory, descriptors, threads and mapped shared memory of the process that
-simulates after each round in the first scene, and their slope over the second half by least
-squares.
-Ends with status 1 if memory grows by more than 20 MiB an hour, or if anything else grows.
+go. Prints resident memory, its part that is not of files, descriptors, threads and mapped shared
+memory of the process that simulates, and their slope over the second half of the rounds in the
+first scene, by least squares. Ends with status 1 if memory grows by more than 20 MiB an hour, or
+by more than 1 MiB a room of `--rooms`, or if anything else grows.
 """
 
 from __future__ import annotations
 
 import argparse
 import asyncio
+import itertools
 import os
 import socket
 import sys
@@ -29,11 +31,13 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from sailenv_ros import Agent, Simulation
+from sailenv_ros.authoring.room_rules.names import drawn_kind
+from sailenv_ros.authoring.room_rules.rule_files import rules_of
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 
-MOST_MIB_PER_HOUR = 20.0
-KINDS = ("memory [MiB]", "descriptors", "threads", "segments")
+MOST_MIB_PER_HOUR, MOST_MIB_PER_ROOM = 20.0, 1.0
+KINDS = ("memory [MiB]", "own memory [MiB]", "descriptors", "threads", "segments")
 
 
 Round = Callable[[str, int], None]
@@ -47,27 +51,39 @@ def main() -> int:
     parser.add_argument("--pause", type=float, default=0.0, help="between two rounds [s]")
     parser.add_argument("--node", action="store_true", help="in a node, by way of ROS")
     parser.add_argument("--scenes", nargs="+", default=["optical", "object_view"])
+    parser.add_argument("--rooms", nargs=2, type=int, metavar=("FIRST", "END"), help="seeds")
     options = parser.parse_args()
+    scenes = _with_rooms(options.scenes[0], range(*options.rooms)) if options.rooms else None
+    endless = itertools.cycle(options.scenes) if scenes is None else iter(scenes)
     rows: list[tuple[float, ...]] = []
     began = told = time.monotonic()
-    rounds = 0
     with (_node if options.node else _in_process)(options.scenes[0]) as (pid, work):
-        while (now := time.monotonic()) - began < 60.0 * options.minutes:
-            work(options.scenes[rounds % len(options.scenes)], rounds)
-            rounds += 1
+        for rounds, scene in enumerate(endless):
+            if (now := time.monotonic()) - began >= 60.0 * options.minutes:
+                break
+            work(scene, rounds)
+            opened = _opened(pid)
             # Scenes differ in size, so each row is of the same one.
-            if rounds % len(options.scenes) == 1 or len(options.scenes) == 1:
-                rows.append(((now - began) / 3600.0, *_opened(pid)))
-                if now - told > 30.0 or len(rows) == 1:
-                    told = now
-                    minutes = (now - began) / 60
-                    print(f"{minutes:6.1f} min  round {rounds:>5}  {_formatted(rows[-1][1:])}")
+            if scene == options.scenes[0]:
+                rows.append(((now - began) / 3600.0 if scenes is None else rounds / 2.0, *opened))
+            if scenes or now - told > 30.0 or not rounds:
+                told = now
+                minutes = (now - began) / 60
+                print(f"{minutes:6.1f} min  round {rounds:>5}  {scene}: {_formatted(opened)}")
             time.sleep(options.pause)
     late = np.array(rows[len(rows) // 2 :])
     slopes = [float(np.polyfit(late[:, 0], late[:, 1 + k], 1)[0]) for k in range(len(KINDS))]
-    growth = late[-1, 2:] - late[0, 2:]
-    print(f"{rounds} rounds; per hour over the second half: {_formatted(slopes)}")
-    return int(slopes[0] > MOST_MIB_PER_HOUR or bool((growth > 0).any()))
+    growth = late[-1, 3:] - late[0, 3:]
+    unit, most = ("hour", MOST_MIB_PER_HOUR) if scenes is None else ("room", MOST_MIB_PER_ROOM)
+    print(f"{rounds + 1} rounds; per {unit} over the second half: {_formatted(slopes)}")
+    return int(slopes[0] > most or bool((growth > 0).any()))
+
+
+def _with_rooms(first: str, seeds: range) -> list[str]:
+    """Return the generated rooms of seeds, each between two rounds of the first scene."""
+    rules = rules_of()
+    rooms = (f"generated:{drawn_kind(seed, rules)}:{seed}" for seed in seeds)
+    return [first, *(scene for room in rooms for scene in (room, first))]
 
 
 @contextmanager
@@ -77,7 +93,7 @@ def _in_process(scene: str) -> Iterator[tuple[int, Round]]:
 
 
 def _simulate(simulation: Simulation, scene: str, number: int) -> None:
-    simulation.change_scene(scene)
+    simulation.change_scene.submit(scene).result()  # a busy machine may need long for an apartment
     names = [f"soak_{number}_{k}" for k in range(4)]
     for name in names:
         spec = AgentSpec(name=name, intrinsics=CameraIntrinsics(width=160, height=120), rate_hz=0.0)
@@ -146,9 +162,11 @@ def _free_port() -> int:
 
 def _opened(pid: int) -> tuple[float, ...]:
     process = Path(f"/proc/{pid}")
-    pages = int((process / "statm").read_text().split()[1])
+    status = dict(
+        line.split(":", 1) for line in (process / "status").read_text().splitlines() if ":" in line
+    )
     return (
-        pages * os.sysconf("SC_PAGE_SIZE") / 2**20,
+        *(int(status[key].split()[0]) / 1024.0 for key in ("VmRSS", "RssAnon")),
         float(len(os.listdir(process / "fd"))),
         float(len(os.listdir(process / "task"))),
         float((process / "maps").read_text().count("/dev/shm/")),
