@@ -1,98 +1,159 @@
-"""Judges pieces from seeds by MuJoCo: it loads each one's MJCF and sweeps each joint.
+"""Judges pieces from seeds by MuJoCo and FCL: their MJCF is loaded and each joint swept.
 
-    python -m benchmarks.judge_furniture --seeds 0 3 curtain blind toy
+    python -m benchmarks.judge_furniture --seeds 0 8 curtain blind toy
 
-Each joint goes through its limits in steps, the others at rest but for doors before it, and MuJoCo
-measures how deep its hulls stand in those of all else. Prints every fault and the worst figures;
-ends with status 1 if a hull is deeper than 1 mm, or an axis is off by more than 1e-6.
+Each joint goes through its limits in steps, the others at rest but for the doors of its cabinet
+that it meets: those are opened. MuJoCo moves the parts, and FCL
+(https://github.com/flexible-collision-library/fcl) measures how deep the shapes of the one that
+moves stand in those of all else. Prints every fault and the worst figures; ends with status 1 if a
+shape is deeper than 1 mm at any step, or a joint's axis or origin in MuJoCo's world is off by more
+than 1e-6.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+import fcl
 import mujoco
 import numpy as np
 
+from benchmarks.room_judges import Floats, fcl_depth, fcl_solid
 from sailenv_content.families.registry import family_named, family_names
 from sailenv_content.families.source import FamilySource
 from sailenv_ros.assets.asset_library import AssetLibrary
-from sailenv_ros.cli.main import main as sailenv
+from sailenv_ros.scene_export import export_asset
+from sailenv_ros.types.model import MovingPart
 
-MOST_M, MOST_AXIS, STEPS = 0.001, 1e-6, 9
+MOST_M, MOST_AXIS, STEPS = 0.001, 1e-6, 17
 COLLIDES = 3
 """Group of the geometries that collide."""
 
+KINDS = {
+    mujoco.mjtGeom.mjGEOM_BOX: ("box", 3),
+    mujoco.mjtGeom.mjGEOM_SPHERE: ("sphere", 1),
+    mujoco.mjtGeom.mjGEOM_CYLINDER: ("cylinder", 2),
+}
+"""By MuJoCo's types: name, and how many numbers give the size."""
+
 
 class Model:
-    """A piece as MuJoCo has it."""
+    """A piece as MuJoCo has it, and its shapes as FCL has them.
+
+    Parameters
+    ----------
+    name : str
+        Of the piece.
+    folder : Path
+        Gets its files.
+    """
 
     def __init__(self, name: str, folder: Path) -> None:
         file = folder / "piece.xml"
-        sailenv(["assets", "export", name, "-o", str(file), "--overwrite"])
-        self.m = mujoco.MjModel.from_xml_path(str(file))
-        self.d = mujoco.MjData(self.m)
-        solid = np.flatnonzero(self.m.geom_group == COLLIDES)
-        self.of_body: dict[int, list[int]] = {}
-        for geom in solid.tolist():
-            self.of_body.setdefault(int(self.m.geom_bodyid[geom]), []).append(geom)
+        export_asset(name, file, overwrite=True)
+        self._m = mujoco.MjModel.from_xml_path(str(file))
+        self._d = mujoco.MjData(self._m)
+        self._solids = {
+            geom: fcl.CollisionObject(self._shape(geom))
+            for geom in np.flatnonzero(self._m.geom_group == COLLIDES).tolist()
+        }
 
     def joint(self, part: str) -> int:
-        """Return the joint of a part, by the end of its name."""
-        names = {
-            mujoco.mj_id2name(self.m, mujoco.mjtObj.mjOBJ_JOINT, n): n for n in range(self.m.njnt)
-        }
-        found = [number for name, number in names.items() if name.endswith(f" {part}")]
-        return min(
-            found, key=lambda n: len(mujoco.mj_id2name(self.m, mujoco.mjtObj.mjOBJ_JOINT, n))
-        )
+        """Return the number of the joint of a part, which is named after the piece and it."""
+        names = [self._m.joint(number).name for number in range(self._m.njnt)]
+        return names.index(f"{self._m.body(1).name} {part}")
 
-    def depth_m(self, joint: int, positions: dict[int, float]) -> float:
-        """Return how deep a joint's body stands in another, with joints at positions [m]."""
-        self.d.qpos[:] = 0.0
-        for number, position in positions.items():
-            self.d.qpos[self.m.jnt_qposadr[number]] = position
-        mujoco.mj_kinematics(self.m, self.d)
-        mujoco.mj_comPos(self.m, self.d)
-        mine = int(self.m.jnt_bodyid[joint])
-        deepest = 0.0
-        for body, geoms in self.of_body.items():
-            if body == mine:
-                continue
-            for one in self.of_body.get(mine, ()):
-                for other in geoms:
-                    apart = np.linalg.norm(self.d.geom_xpos[one] - self.d.geom_xpos[other])
-                    if apart > self.m.geom_rbound[one] + self.m.geom_rbound[other]:
-                        continue
-                    gap = mujoco.mj_geomDistance(self.m, self.d, one, other, 0.01, None)
-                    deepest = max(deepest, -gap)
+    def error(self, joint: int, part: MovingPart) -> float:
+        """Return how far a joint's axis, or a hinge's origin, is from the part's [m]."""
+        self._pose({})
+        off = np.abs(self._d.xaxis[joint] - part.axis).max()
+        if part.type == "hinge":
+            aside = np.cross(self._d.xanchor[joint] - part.origin_m, part.axis)
+            off = max(off, np.abs(aside).max())
+        return float(off)
+
+    def depths_m(self, joint: int, positions: Mapping[int, float]) -> dict[int, float]:
+        """Return how deep a joint's body stands in other bodies, by number [m].
+
+        Parameters
+        ----------
+        joint : int
+        positions : mapping of int to float
+            Of joints [rad] or [m]; the others are at 0.
+        """
+        self._pose(positions)
+        of, own = self._m.geom_bodyid, self._m.jnt_bodyid[joint]
+        others = np.array([geom for geom in self._solids if of[geom] != own], int)
+        deepest: dict[int, float] = {}
+        for one in (geom for geom in self._solids if of[geom] == own):
+            apart = np.linalg.norm(self._d.geom_xpos[others] - self._d.geom_xpos[one], axis=1)
+            near = apart < self._m.geom_rbound[others] + self._m.geom_rbound[one]
+            for other in others[near].tolist():
+                depth = fcl_depth(self._solids[one], self._solids[other])
+                deepest[int(of[other])] = max(deepest.get(int(of[other]), 0.0), depth)
         return deepest
 
+    def body(self, joint: int) -> int:
+        """Return the number of the body that a joint moves."""
+        return int(self._m.jnt_bodyid[joint])
 
-def faults(name: str, library: AssetLibrary, folder: Path) -> Iterator[tuple[str, float, float]]:
-    """Yield each part that moves, with its depth [m] and the error of its axis."""
+    def _pose(self, positions: Mapping[int, float]) -> None:
+        self._d.qpos[:] = 0.0
+        for number, position in positions.items():
+            self._d.qpos[self._m.jnt_qposadr[number]] = position
+        mujoco.mj_kinematics(self._m, self._d)
+        mujoco.mj_comPos(self._m, self._d)
+        for geom, solid in self._solids.items():
+            turn = self._d.geom_xmat[geom].reshape(3, 3)
+            solid.setTransform(fcl.Transform(turn, self._d.geom_xpos[geom]))
+
+    def _shape(self, geom: int) -> object:
+        if self._m.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:
+            mesh = self._m.geom_dataid[geom]
+            first = self._m.mesh_vertadr[mesh]
+            corners = self._m.mesh_vert[first : first + self._m.mesh_vertnum[mesh]]
+            return fcl_solid("mesh", corners.astype(np.float64))[0]
+        kind, numbers = KINDS[mujoco.mjtGeom(self._m.geom_type[geom])]
+        size: Floats = self._m.geom_size[geom][:numbers]
+        return fcl_solid(kind, size)[0]
+
+
+def sweeps(name: str, library: AssetLibrary, folder: Path) -> Iterator[tuple[str, float, float]]:
+    """Yield each part that moves, with its greatest depth [m] and the error of its axis."""
     asset = library.get(name)
     if not asset.moving:
         return
     model = Model(name, folder)
-    limits = {part.name: part.limits for part in asset.moving}
     for part in asset.moving:
         joint = model.joint(part.name)
-        axis = float(np.abs(model.m.jnt_axis[joint] - part.axis).max())
+        doors = {
+            model.joint(door.name): door.limits[1]
+            for door in asset.moving
+            if door is not part and _is_door(door.name) and _cabinet(door.name, part.name)
+        }
         worst = 0.0
         for position in np.linspace(*part.limits, STEPS).tolist():
-            at = {joint: position}
-            depth = model.depth_m(joint, at)
-            if depth > MOST_M:  # it may be behind doors
-                doors = [n for n in limits if ("door" in n or "flap" in n or n == "lid")]
-                at |= {model.joint(n): limits[n][1] for n in doors if n != part.name}
-                depth = min(depth, model.depth_m(joint, at))
-            worst = max(worst, depth)
-        yield part.name, worst, axis
+            depths = model.depths_m(joint, {joint: position})
+            met = {d: doors[d] for d in doors if depths.get(model.body(d), 0.0) > 0.0}
+            if met:
+                depths = model.depths_m(joint, {joint: position, **met})
+            worst = max(worst, *depths.values(), 0.0)
+        yield part.name, worst, model.error(joint, part)
+
+
+def _is_door(part: str) -> bool:
+    return "door" in part or "flap" in part or part == "lid"
+
+
+def _cabinet(door: str, part: str) -> bool:
+    """Return whether two parts are of one cabinet; pieces of one only do not name it."""
+    first, second = (re.match(r"cabinet \d+ ", name) for name in (door, part))
+    return (first and first[0]) == (second and second[0])
 
 
 def main() -> int:
@@ -110,12 +171,13 @@ def main() -> int:
                 for seed in range(*args.seeds):
                     name = f"{family}~{style}:{seed}"
                     pieces += 1
-                    for part, depth, axis in faults(name, library, Path(folder)):
+                    for part, depth, axis in sweeps(name, library, Path(folder)):
                         joints += 1
                         deepest, off = max(deepest, depth), max(off, axis)
                         if depth > MOST_M or axis > MOST_AXIS:
                             faulty += 1
-                            print(f"{name}: {part} {1000.0 * depth:.1f} mm, axis {axis:.1e}")
+                            told = f"{name}: {part} {1000.0 * depth:.1f} mm, axis {axis:.1e}"
+                            print(told, flush=True)
     print(
         f"{pieces} pieces, {joints} joints, {faulty} at fault; deepest {1000.0 * deepest:.2f} mm, "
         f"axes off by at most {off:.1e}",

@@ -262,32 +262,13 @@ def _depths(objects: list[dict[str, Any]]) -> Iterator[tuple[tuple[str, str], fl
 def _solids(thing: Mapping[str, Any]) -> Iterator[tuple[Any, Floats]]:
     """Yield each shape of an object as FCL has it, with its bounds."""
     import fcl
-    from scipy.spatial import ConvexHull
 
     pose = np.asarray(thing["pose"])
     for shape in thing["shapes"]:
         own = np.asarray(shape.get("pose", np.eye(4)))
         at = pose @ own
-        if shape["type"] == "mesh":
-            points = np.asarray(shape["points"])
-            hull = ConvexHull(points)
-            faces = np.concatenate([np.full((len(hull.simplices), 1), 3), hull.simplices], axis=1)
-            solid = fcl.Convex(points, len(hull.simplices), faces.ravel())
-            reach = points
-        elif shape["type"] == "box":
-            size = np.asarray(shape["size"])
-            solid = fcl.Box(*(2.0 * size))
-            reach = np.stack(np.meshgrid(*((-s, s) for s in size)), axis=-1).reshape(-1, 3)
-        elif shape["type"] == "sphere":
-            (radius,) = shape["size"]
-            solid = fcl.Sphere(radius)
-            reach = np.array([[-radius] * 3, [radius] * 3])
-        else:
-            radius, half = shape["size"]
-            solid = fcl.Cylinder(radius, 2.0 * half)
-            reach = np.stack(
-                np.meshgrid((-radius, radius), (-radius, radius), (-half, half)), axis=-1
-            ).reshape(-1, 3)
+        size = shape["points"] if shape["type"] == "mesh" else shape["size"]
+        solid, reach = fcl_solid(shape["type"], np.asarray(size))
         corners = reach @ at[:3, :3].T + at[:3, 3]
         if shape["type"] == "sphere":
             corners = at[:3, 3] + reach
@@ -296,11 +277,46 @@ def _solids(thing: Mapping[str, Any]) -> Iterator[tuple[Any, Floats]]:
 
 
 def _depth(first: tuple[Any, Floats], second: tuple[Any, Floats]) -> float:
-    import fcl
-
     (a, box_a), (b, box_b) = first, second
     if (np.maximum(box_a[0], box_b[0]) > np.minimum(box_a[1], box_b[1])).any():
         return 0.0
+    return fcl_depth(a, b)
+
+
+def fcl_solid(kind: str, size: Floats) -> tuple[Any, Floats]:
+    """Return a shape as FCL has it, and corners that hold it [m].
+
+    Parameters
+    ----------
+    kind : {'box', 'sphere', 'cylinder', 'mesh'}
+        A mesh is the hull of its corners.
+    size : numpy.ndarray
+        Half sides (3,), radius (1,), radius and half height (2,), or corners (n, 3) [m].
+    """
+    import fcl
+    from scipy.spatial import ConvexHull
+
+    if kind == "mesh":
+        hull = ConvexHull(size)
+        faces = np.concatenate([np.full((len(hull.simplices), 1), 3), hull.simplices], axis=1)
+        return fcl.Convex(size, len(hull.simplices), faces.ravel()), size
+    if kind == "box":
+        return fcl.Box(*(2.0 * size)), _corners(*size)
+    if kind == "sphere":
+        (radius,) = size
+        return fcl.Sphere(radius), np.array([[-radius] * 3, [radius] * 3])
+    radius, half = size
+    return fcl.Cylinder(radius, 2.0 * half), _corners(radius, radius, half)
+
+
+def _corners(*half: float) -> Floats:
+    return np.stack(np.meshgrid(*((-h, h) for h in half)), axis=-1).reshape(-1, 3)
+
+
+def fcl_depth(a: Any, b: Any) -> float:
+    """Return how deep two objects of FCL stand in each other [m]."""
+    import fcl
+
     request = fcl.CollisionRequest(num_max_contacts=16, enable_contact=True)
     result = fcl.CollisionResult()
     fcl.collide(a, b, request, result)
