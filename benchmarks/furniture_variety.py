@@ -2,16 +2,19 @@
 
     python -m benchmarks.furniture_variety --model nanodet_coco_416.onnx --pieces 24
 
-Each piece is pictured on a plain floor. Variety is the mean cosine distance between two pieces of a
-category, in the features of the last stage of the network's backbone, averaged over the picture;
-`unlike` is how many pieces there are of which no two are nearer than 0.04. A piece is named if the
-network finds its category, with a score of at least 0.3, in one of two views.
+Each piece is pictured on a plain floor. Variety is by cosine distances between pieces of a
+category, in the features of the last stage of the network's backbone, averaged over the picture:
+`apart` is the mean over all pairs, `nearest` the mean from each piece to the one that is most like
+it (which falls as there are more of them), `unlike` how many pieces there are of which no two are
+nearer than 0.04. A piece is `named` if the network knows its category and finds it, with a score of
+at least 0.3, in one of two views.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +34,7 @@ LEAST_SCORE = 0.3
 UNLIKE = 0.04
 """Cosine distance of two pieces that look unlike."""
 
-TABLE = "  apart  unlike  named"
+TABLE = "  apart  nearest  unlike  named"
 SIDE_PX = 416
 
 _GRAPH, _NODE, _OUTPUT, _OF_NODE = 7, 1, 12, 2
@@ -122,24 +125,55 @@ def groups(count: int) -> Iterator[tuple[str, list[str], list[str]]]:
     for family in map(family_named, family_names()):
         for name, style in family.styles.items():
             styles.setdefault(style.category or family.category, []).append(f"{family.name}~{name}")
-    for category in sorted(styles):
-        if category in COCO_NAMES:
-            mine = styles[category]
-            seeded = [f"{mine[k % len(mine)]}:{900_000 + k}" for k in range(count)]
-            yield category, sorted(listed.get(category, ())), seeded
+    for category, mine in sorted(styles.items()):
+        seeded = [f"{mine[k % len(mine)]}:{900_000 + k}" for k in range(count)]
+        yield category, sorted(listed.get(category, ())), seeded
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Likeness of the pieces of a category, and how many are named.
+
+    Attributes
+    ----------
+    apart, nearest : float
+        Mean distance of two pieces, and of a piece from the one most like it; NaN of one piece.
+    unlike : int
+        Pieces of which no two are alike.
+    named : float
+        Share that the network names; NaN of a category that it does not know.
+    """
+
+    apart: float
+    nearest: float
+    unlike: int
+    named: float
+
+    def __str__(self) -> str:
+        """Return the columns of `TABLE`."""
+        apart, nearest, named = (
+            f"{'-':>7}" if np.isnan(value) else told
+            for value, told in (
+                (self.apart, f"{self.apart:7.3f}"),
+                (self.nearest, f"{self.nearest:7.3f}"),
+                (self.named, f"{self.named:7.0%}"),
+            )
+        )
+        return f"{apart}  {nearest}{self.unlike:8d}{named}"
 
 
 def judged(
     names: Sequence[str], category: str, library: AssetLibrary, net: Network, eyes: Any
-) -> tuple[float, int, float]:
-    """Return the mean distance of two pieces, how many are unlike, and the share that is named."""
+) -> Found:
+    """Return what the network makes of pieces of a category."""
+    known = category in COCO_NAMES
     features, named = [], 0
     for name in names:
         views = [
             net.seen(
                 eyes.thumbnail(library.get(name), width=SIDE_PX, height=SIDE_PX, azimuth_deg=a)
             )
-            for a in AZIMUTHS_DEG
+            for a in (AZIMUTHS_DEG if known else AZIMUTHS_DEG[:1])
         ]
         features.append(views[0][0])
         named += any(scores.get(category, 0.0) >= LEAST_SCORE for _, scores in views)
@@ -149,11 +183,17 @@ def judged(
     for number in range(len(names)):
         if all(apart[number, other] >= UNLIKE for other in kept):
             kept.append(number)
-    return float(pairs.mean()) if len(pairs) else 0.0, len(kept), named / len(names)
+    single = len(names) == 1
+    return Found(
+        np.nan if single else float(pairs.mean()),
+        np.nan if single else float((apart + 9.0 * np.eye(len(names))).min(axis=1).mean()),
+        len(kept),
+        named / len(names) if known else np.nan,
+    )
 
 
 def main() -> int:
-    """Print a line for each category that the network knows, and means over them."""
+    """Print a line for each category, and means over those that have what is compared."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--model", type=Path, required=True, help="a NanoDet of COCO, .onnx")
     parser.add_argument("--pieces", type=int, default=24, help="pieces from seeds of each category")
@@ -162,25 +202,27 @@ def main() -> int:
     net = Network(args.model)
     library = AssetLibrary(installed_sources(installed_packs()))
     print(f"{'category':<14}{'catalogue':>10}{TABLE}{'seeds':>10}{TABLE}")
-    totals: dict[str, list[float]] = {}
+    found: list[list[Found | None]] = []
     with PreviewRenderer() as eyes:
         for category, listed, seeded in groups(args.pieces):
             if args.categories and category not in args.categories:
                 continue
-            text = f"{category:<14}"
-            for kind, names in (("catalogue", listed), ("seeds", seeded)):
-                text += f"{len(names):10d}"
-                if not names:
-                    text += f"{'-':>{len(TABLE)}}"
-                    continue
-                apart, unlike, named = judged(names, category, library, net, eyes)
-                text += f"{apart:7.3f}{unlike:8d}{named:7.0%}"
-                totals.setdefault(f"{kind} named", []).append(named)
-                if len(names) > 1:
-                    totals.setdefault(f"{kind} apart", []).append(apart)
-            print(text, flush=True)
-    for key, values in sorted(totals.items()):
-        print(f"mean {key}: {np.mean(values):.3f}")
+            pair = [
+                judged(names, category, library, net, eyes) if names else None
+                for names in (listed, seeded)
+            ]
+            found.append(pair)
+            columns = (
+                f"{len(names):10d}{of or ''!s:{len(TABLE)}}"
+                for names, of in zip((listed, seeded), pair, strict=True)
+            )
+            print(f"{category:<14}{''.join(columns)}".rstrip(), flush=True)
+    for key in ("apart", "nearest", "unlike", "named"):
+        rows = [[getattr(of, key) if of else np.nan for of in pair] for pair in found]
+        values = np.array(rows, float)
+        both = values[~np.isnan(values).any(axis=1)]
+        print(f"mean {key} of {len(both)} categories: {both.mean(axis=0).round(3)}")
+    print(f"mean named of all pieces from seeds: {np.nanmean(values[:, 1]):.3f}")
     return 0
 
 
