@@ -107,7 +107,8 @@ class _NameLock(_OwnLock):
 
     def release(self) -> None:
         if self._fd is not None:
-            os.utime(self._fd)
+            now = time.time_ns()  # finer than the kernel's own stamps: names have an order
+            os.utime(self._fd, ns=(now, now))
         super().release()
 
 

@@ -90,6 +90,14 @@ sys.stdin.read()
 """
 
 
+@pytest.fixture
+def own_locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder of locks that other tests do not take names in."""
+    tmp_path.chmod(0o700)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+
+
+@pytest.mark.usefixtures("own_locks")
 def test_names_of_agents_come_again_but_not_soon() -> None:
     """The one that was let go of longest ago is next."""
     held = AgentName()
@@ -104,6 +112,7 @@ def test_names_of_agents_come_again_but_not_soon() -> None:
     assert found[around:] == found[:-around]
 
 
+@pytest.mark.usefixtures("own_locks")
 def test_where_all_names_are_in_use_there_are_others(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(client_locks, "MOST_NAMES", 2)
     held = [AgentName() for _ in range(4)]
@@ -112,6 +121,7 @@ def test_where_all_names_are_in_use_there_are_others(monkeypatch: pytest.MonkeyP
     assert AgentName().text == held[1].text
 
 
+@pytest.mark.usefixtures("own_locks")
 @pytest.mark.parametrize("arguments", [(), ("fork",)])
 def test_a_name_is_one_process_s_and_free_when_that_was_killed(
     arguments: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
