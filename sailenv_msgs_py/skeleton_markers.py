@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
-from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from geometry_msgs.msg import Pose, Quaternion
 from numpy.typing import NDArray
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID
+from sailenv_msgs_py.space_msgs import points_to_msg
+from sailenv_msgs_py.transforms import vector_to_msg
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.types.skeleton import Skeleton
 
 __all__ = ["skeleton_markers_to_msg"]
+
+Doubles = NDArray[np.float64]
 
 BONE_M, KEYPOINT_M = 0.015, 0.04
 """Width of lines and spheres [m]."""
@@ -47,7 +49,7 @@ def skeleton_markers_to_msg(frame: Frame, header: Header) -> MarkerArray:
     return MarkerArray(markers=markers)
 
 
-def _bones(skeleton: Skeleton) -> NDArray[np.float64]:
+def _bones(skeleton: Skeleton) -> Doubles:
     """Return (2 K, 3): begin and end of each bone."""
     child = np.flatnonzero(skeleton.parents >= 0)
     ends = np.stack([skeleton.joints[skeleton.parents[child]], skeleton.joints[child]], axis=1)
@@ -55,7 +57,7 @@ def _bones(skeleton: Skeleton) -> NDArray[np.float64]:
 
 
 def _marker(
-    header: Header, namespace: str, id_: int, kind: int, size_m: float, points: Iterable[object]
+    header: Header, namespace: str, id_: int, kind: int, size_m: float, points: Doubles
 ) -> Marker:
     return Marker(
         header=header,
@@ -64,8 +66,8 @@ def _marker(
         type=kind,
         action=Marker.ADD,
         pose=Pose(orientation=Quaternion(w=1.0)),
-        scale=Vector3(x=size_m, y=size_m, z=size_m),
-        points=[Point(x=x, y=y, z=z) for x, y, z in np.asarray(points, np.float64).tolist()],
+        scale=vector_to_msg((size_m, size_m, size_m)),
+        points=points_to_msg(points),
     )
 
 

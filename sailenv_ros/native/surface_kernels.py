@@ -100,8 +100,10 @@ def surface_points(
     """
     height, width = instance.shape
     rows = np.zeros(65536, np.uint16)
-    trees = [] if places is not None else [_tree_of(surface) for surface in surfaces]
-    if places is not None:
+    trees = []
+    if places is None:
+        trees = [_tree_of(surface) for surface in surfaces]
+    else:
         checked("places", places, TRIANGLE_PLACE, (height, width))
     if points is not None:
         checked("points", points, np.float32, (height, width, 3))
@@ -110,11 +112,10 @@ def surface_points(
         checked("vertices", surface.present, np.float32, (count, 3))
         checked("wanted vertices", surface.target, np.float32, (count, 3))
         rows[surface.instance_id] = 1 + number
-    addresses = np.zeros((len(surfaces), 3), np.uint64)
-    addresses[:, :2] = np.array(
-        [(address(one.present), address(one.target)) for one in surfaces], np.uint64
-    ).reshape(-1, 2)
-    addresses[: len(trees), 2] = [address(tree.corners) for tree in trees]
+    addresses = [
+        (address(one.present), address(one.target), address(one.tree and one.tree.corners))
+        for one in surfaces
+    ]
     _SURFACE(
         threads,
         height=height,
@@ -125,7 +126,7 @@ def surface_points(
         row_of_instance=rows,
         rows=len(surfaces),
         shapes=np.concatenate([np.zeros(0, RAY_SHAPE), *(tree.shape for tree in trees)]),
-        addresses=addresses,
+        addresses=np.array(addresses, np.uint64).reshape(-1, 3),
         vertex_counts=np.array([len(one.present) for one in surfaces], np.int64),
         scales=np.array([one.scale for one in surfaces], np.float64).reshape(-1, 3),
         relative=relative,

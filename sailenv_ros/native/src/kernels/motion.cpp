@@ -296,10 +296,7 @@ void move_chunk(const Motion& in, const double* columns, Wanted wanted, int64_t 
     const double y = sailenv::ray_y(*in.from_lens, static_cast<double>(v));
     for (int64_t first = 0; first < count;) {
         const uint16_t id = ids[first];
-        const uint16_t eight[8] = {id, id, id, id, id, id, id, id};
-        int64_t end = first + 1;
-        while (end + 8 <= count && memcmp(ids + end, eight, sizeof eight) == 0) end += 8;
-        while (end < count && ids[end] == id) end++;
+        const int64_t end = sailenv::same_until(ids, first, count);
         const uint16_t asked = in.row_of_instance[id];
         const int64_t row = asked < in.rows ? asked : 0;
         if (in.offsets != nullptr && in.deforming[row] != 0) {
@@ -401,8 +398,7 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
         p.shift[k] = 0.0;
     }
     for (int64_t first = 0; first < count;) {
-        int64_t end = first + 1;
-        while (end < count && ids[end] == ids[first]) end++;
+        const int64_t end = sailenv::same_until(ids, first, count);
         const uint16_t asked = in.row_of_instance[ids[first]];
         const int64_t row = asked < in.rows ? asked : 0;
         move_points(in.motions + 12 * row, first, end, p);
