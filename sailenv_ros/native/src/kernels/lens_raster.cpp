@@ -127,7 +127,8 @@ struct LensDrawing {
                              (edge2.at(at, down) >= least2);
                     if (SEVERAL) drawn &= lies_on(faces + x, face);
                 }
-                if (!any(drawn)) continue;
+                // A branch here would be foreseen too seldom to be worth it.
+                if (MASKED && !any(drawn)) continue;
                 if (MASKED) {
                     drawn = opaque_pixels(masked, part, at, down, steps_at(lens, row, x), n, drawn);
                 }

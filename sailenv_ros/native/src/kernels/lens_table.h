@@ -66,13 +66,14 @@ struct LensTable {
 
 LANES_INLINE bool is_used(const CubeFace& face) { return face.all.x0 <= face.all.x1; }
 
-// Which of eight samples lie on a face.
-LANES_INLINE i8 lies_on(const uint8_t* faces, int32_t face) {
+// The faces of eight samples, and which of them lie on one.
+LANES_INLINE i8 faces_at(const uint8_t* faces) {
     typedef uint8_t b8 __attribute__((vector_size(8)));
     b8 numbers;
     memcpy(&numbers, faces, 8);
-    return __builtin_convertvector(numbers, i8) == face;
+    return __builtin_convertvector(numbers, i8);
 }
+LANES_INLINE i8 lies_on(const uint8_t* faces, int32_t face) { return faces_at(faces) == face; }
 
 // How places change from pixel to pixel, at eight samples of a row.
 struct LensSteps {

@@ -326,35 +326,41 @@ struct Pixels {
 };
 
 // Where a pixel's ray begins, in the camera's plane, and where it leads.
-void ray_of(const Pixels& in, int64_t at, int64_t u, int64_t v, double* begin, double* ray) {
+LANES_INLINE void ray_of(const Pixels& in, int64_t at, int64_t u, int64_t v, double* begin,
+                         double* ray) {
     begin[0] = begin[1] = 0.0;
     if (in.rays != nullptr) {
         for (int k = 0; k < 3; k++) ray[k] = in.rays[3 * at + k];
         return;
     }
-    double* across = in.parallel ? begin : ray;
-    ray[0] = ray[1] = 0.0;
+    const double x = sailenv::ray_x(in.lens, static_cast<double>(u)),
+                 y = sailenv::ray_y(in.lens, static_cast<double>(v));
+    begin[0] = in.parallel ? x : 0.0;
+    begin[1] = in.parallel ? y : 0.0;
+    ray[0] = in.parallel ? 0.0 : x;
+    ray[1] = in.parallel ? 0.0 : y;
     ray[2] = 1.0;
-    across[0] = sailenv::ray_x(in.lens, static_cast<double>(u));
-    across[1] = sailenv::ray_y(in.lens, static_cast<double>(v));
 }
 
 // The point that a pixel sees at a depth, or at a distance along its ray; its direction where that
 // is infinite.
-void point_of(const Pixels& in, int64_t at, int64_t u, int64_t v, double depth, double* point) {
+LANES_INLINE void point_of(const Pixels& in, int64_t at, int64_t u, int64_t v, double depth,
+                           double* point) {
     double begin[2], ray[3];
     ray_of(in, at, u, v, begin, ray);
     const double reach = depth == INFINITE ? 1.0 : depth;
     for (int k = 0; k < 3; k++) point[k] = reach * ray[k];
-    if (!in.parallel || depth == INFINITE) return;
-    point[0] = begin[0];
-    point[1] = begin[1];
+    const bool aside = in.parallel && depth != INFINITE;
+    point[0] = aside ? begin[0] : point[0];
+    point[1] = aside ? begin[1] : point[1];
 }
 
 // Where a chunk's points are in the other camera's frame; there is room for steps of eight.
 struct MovedPoints {
     double from[3][CHUNK + 8], at[3][CHUNK + 8], step[3][CHUNK + 8];
     double shift[CHUNK + 8];  // see `Affine`
+    double place[2][CHUNK + 8];
+    int64_t seen[CHUNK + 8];
 };
 
 // Moves the points of neighbours that move alike; steps of eight as in `move_run`.
@@ -373,6 +379,22 @@ void move_points(const double* rows, int64_t first, int64_t end, MovedPoints& p)
     }
 }
 
+// Where the other camera has points. The loop becomes one of vectors where the law has no branch.
+template <class Project>
+void project_points(const Project& project, int64_t first, int64_t end, MovedPoints& p) {
+    for (int64_t k = first; k < end; k++) {
+        const double moved[3] = {p.at[0][k], p.at[1][k], p.at[2][k]};
+        double place[2] = {0.0, 0.0};
+        p.seen[k] = project(moved, p.shift[k], place);
+        for (int axis = 0; axis < 2; axis++) p.place[axis][k] = place[axis];
+    }
+}
+
+// Whether a motion leaves all points where they are.
+bool is_zero(const double* rows) {
+    return std::all_of(rows, rows + 12, [](double x) { return x == 0.0; });
+}
+
 // The same as `move_run` where one of the lenses is no pin-hole. `project(point, place)` tells
 // where the other lens has a point, as a place for x and y of `Lens`; false if it does not see it.
 // It takes the `shift` of points between the two: 0 for directions.
@@ -386,8 +408,9 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
     const Pixels pixels{*in.from_lens, in.from_rays, in.from_parallel != 0};
     MovedPoints p;
     Places places;
+    const float* depths = in.depth + at;
     for (int64_t k = 0; k < count; k++) {
-        const double z = in.depth[at + k];
+        const double z = depths[k];
         double point[3];
         point_of(pixels, at + k, u + k, v, z, point);
         for (int axis = 0; axis < 3; axis++) p.from[axis][k] = point[axis];
@@ -411,21 +434,28 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
                 p.at[axis][k] += more[axis];
             }
         }
-        const bool has_motion = row != 0;
+        // Not where all rest: some laws are slow.
+        const bool has_motion = row != 0, same_lens = in.same_lens != 0;
+        const bool moves_at_all =
+            has_motion && (!same_lens || deforms || !is_zero(in.motions + 12 * row));
+        if (moves_at_all) {
+            project_points(project, first, end, p);
+        } else {
+            std::fill(p.seen + first, p.seen + end, 0);
+            for (auto& axis : p.place) std::fill(axis + first, axis + end, 0.0);
+        }
         for (int64_t k = first; k < end; k++) {
             const bool known =
-                has_motion && p.from[2][k] == p.from[2][k] && p.at[2][k] == p.at[2][k];
-            const bool rests = in.same_lens != 0 && p.step[0][k] == 0.0 && p.step[1][k] == 0.0 &&
-                               p.step[2][k] == 0.0;
-            const double moved[3] = {p.at[0][k], p.at[1][k], p.at[2][k]};
-            double place[2] = {0.0, 0.0};
-            const bool valid = known && (rests || project(moved, p.shift[k], place));
+                has_motion & (p.from[2][k] == p.from[2][k]) & (p.at[2][k] == p.at[2][k]);
+            const bool rests =
+                same_lens & (p.step[0][k] == 0.0) & (p.step[1][k] == 0.0) & (p.step[2][k] == 0.0);
+            const bool moves = known & !rests & (p.seen[k] != 0);
+            const double right = sailenv::pixel_u(to, p.place[0][k]) - static_cast<double>(u + k);
+            const double down = sailenv::pixel_v(to, p.place[1][k]) - static_cast<double>(v);
             places.known[k] = known;
-            places.valid[k] = valid;
-            places.u[k] = places.v[k] = 0.0;
-            if (!valid || rests) continue;
-            places.u[k] = sailenv::pixel_u(to, place[0]) - static_cast<double>(u + k);
-            places.v[k] = sailenv::pixel_v(to, place[1]) - static_cast<double>(v);
+            places.valid[k] = known & (rests | moves);
+            places.u[k] = moves ? right : 0.0;
+            places.v[k] = moves ? down : 0.0;
         }
         if (wanted.scene) {
             for (int64_t k = first; k < end; k++) {

@@ -702,6 +702,16 @@ void clear_band(const Projection& projection, int32_t band, int32_t band_rows, i
     if (visible != nullptr) memset(visible, 0xff, static_cast<size_t>(count) * 4);
 }
 
+// Asks for where the samples of some rows look.
+void prefetch_places(const LensTable& lens, const RowRange& rows) {
+    constexpr int64_t LINE = 16;  // numbers of a line of the cache
+    for (const float* places : {lens.x, lens.y}) {
+        for (int64_t k = rows.first * lens.stride; k < (rows.last + 1) * lens.stride; k += LINE) {
+            __builtin_prefetch(places + k, 0, 2);
+        }
+    }
+}
+
 void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
                int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible,
                float* inverse_depth) {
@@ -709,6 +719,7 @@ void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& 
     const int64_t before = rows.first * stride;
     uint32_t* seen = visible == nullptr ? nullptr : visible - before;
     const bool bends = projection.table != nullptr;
+    if (bends) prefetch_places(*projection.table, rows);
     const auto plain = bends             ? draw_through_lens
                        : projection.fine ? draw_triangle<false, true>
                                          : draw_triangle<false, false>;

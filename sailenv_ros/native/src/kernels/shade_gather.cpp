@@ -199,6 +199,18 @@ LANES_INLINE void prefetch_corners(const Shading& s, const Triangle& t) {
     }
 }
 
+// Asks for what the table says of the next row's pixels.
+LANES_INLINE void prefetch(const LensTable& lens, int32_t y, int32_t x) {
+    const int64_t plane = lens.step_rows * lens.step_stride;
+    const float *steps = lens.steps + y * lens.step_stride + x,
+                *places = lens.x + y * lens.stride + x;
+    for (int32_t i = 0; i < CHUNK; i += 16) {
+        __builtin_prefetch(places + i);
+        __builtin_prefetch(lens.y + y * lens.stride + x + i);
+        for (int k = 0; k < 4; k++) __builtin_prefetch(steps + k * plane + i);
+    }
+}
+
 // From slopes along the axes of a face to changes from pixel to pixel.
 LANES_INLINE void set_steps(Chunk& c, int32_t i, const LensSteps& steps) {
     store(c.x_right + i, steps.x_right);
@@ -338,11 +350,10 @@ void gather_through_lens(const Shading& s, Chunk& c) {
         const i8 seen = x == x;
         store(c.at_x + i, seen ? x : splat(0.0f));
         store(c.at_y + i, seen ? y : splat(0.0f));
-        for (int k = 0; k < 8; k++) {
-            c.face[i + k] = seen[k] ? lens.face[first + i + k] : NO_FACE;
-        }
+        store(c.face + i, seen ? faces_at(lens.face + first + i) : splat(NO_FACE));
         set_steps(c, i, steps_at(lens, c.y, c.x + i));
     }
+    prefetch(lens, c.y + 1, c.x);
     gather_runs(s, c, [&](const Triangle& t) { return face_planes(s, t); });
     turn_slopes(c);
 }

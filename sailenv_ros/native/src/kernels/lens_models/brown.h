@@ -6,25 +6,36 @@
 
 namespace sailenv {
 
-// Coefficients k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 at a place, with all derivatives.
-struct Brown {
+// Coefficients k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 at a place, with all derivatives; the first five
+// alone where `RATIONAL` is false.
+template <bool RATIONAL>
+struct BrownLaw {
     double factor, change;  // the radial factor, and its derivative by r²
     double x, y;            // the distorted place
     double xx, xy, yx, yy;  // its derivatives: xy is that of x by y
     bool positive;          // the radial factor has passed neither 0 nor a pole
 
-    Brown(const double* k, double a, double b) {
+    BrownLaw(const double* k, double a, double b) {
         const double r2 = a * a + b * b;
         const double above = 1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
-        const double below = 1.0 + r2 * (k[5] + r2 * (k[6] + r2 * k[7]));
         const double d_above = k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[4]);
-        const double d_below = k[5] + r2 * (2.0 * k[6] + r2 * 3.0 * k[7]);
-        factor = above / below;
-        change = (d_above - factor * d_below) / below;
-        positive = above > 0.0 && below > 0.0;
         const double p1 = k[2], p2 = k[3];
-        const double s_x = r2 * (k[8] + r2 * k[9]), s_y = r2 * (k[10] + r2 * k[11]);
-        const double ds_x = k[8] + 2.0 * r2 * k[9], ds_y = k[10] + 2.0 * r2 * k[11];
+        double s_x = 0.0, s_y = 0.0, ds_x = 0.0, ds_y = 0.0;
+        if (RATIONAL) {
+            const double below = 1.0 + r2 * (k[5] + r2 * (k[6] + r2 * k[7]));
+            const double d_below = k[5] + r2 * (2.0 * k[6] + r2 * 3.0 * k[7]);
+            factor = above / below;
+            change = (d_above - factor * d_below) / below;
+            positive = above > 0.0 && below > 0.0;
+            s_x = r2 * (k[8] + r2 * k[9]);
+            s_y = r2 * (k[10] + r2 * k[11]);
+            ds_x = k[8] + 2.0 * r2 * k[9];
+            ds_y = k[10] + 2.0 * r2 * k[11];
+        } else {
+            factor = above;
+            change = d_above;
+            positive = above > 0.0;
+        }
         x = a * factor + 2.0 * p1 * a * b + p2 * (r2 + 2.0 * a * a) + s_x;
         y = b * factor + p1 * (r2 + 2.0 * b * b) + 2.0 * p2 * a * b + s_y;
         const double mixed = 2.0 * a * b * change + 2.0 * p1 * a + 2.0 * p2 * b;
@@ -37,6 +48,7 @@ struct Brown {
     double determinant() const { return xx * yy - xy * yx; }
     bool unfolded() const { return positive && determinant() > 0.0 && xx + yy > 0.0; }
 };
+using Brown = BrownLaw<true>;
 
 inline bool is_radial(const double* k) {
     return k[2] == 0.0 && k[3] == 0.0 && k[8] == 0.0 && k[9] == 0.0 && k[10] == 0.0 && k[11] == 0.0;

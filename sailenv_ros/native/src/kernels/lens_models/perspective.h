@@ -6,6 +6,7 @@
 namespace sailenv {
 
 // `LensLaw::radius` is the undistorted radius at the limit.
+template <bool RATIONAL>
 struct Perspective {
     static constexpr double MOST_ANGLE = 89.5 * HALF_TURN / 180.0,
                             MOST_VERTICAL = 85.0 * HALF_TURN / 180.0;
@@ -20,14 +21,12 @@ struct Perspective {
     static double radius(const LensLaw& law) { return std::tan(std::fmin(law.limit, MOST_ANGLE)); }
 
     static bool project(const LensLaw& law, const double* point, double* place) {
-        const double z = point[2];
-        if (!(z > 0.0)) return false;
-        const double x = point[0] / z, y = point[1] / z;
-        if (!(length2(x, y) <= law.radius)) return false;
-        const Brown at(law.k, x, y);
+        // Without branches, so that loops over points become vectors.
+        const double z = point[2], x = point[0] / z, y = point[1] / z;
+        const BrownLaw<RATIONAL> at(law.k, x, y);
         place[0] = at.x;
         place[1] = at.y;
-        return true;
+        return (z > 0.0) & (x * x + y * y <= law.radius * law.radius);
     }
 
     static bool unproject(const LensLaw& law, const double* place, double* ray) {

@@ -5,7 +5,7 @@
 
 namespace sailenv {
 
-struct Pinhole : Perspective {
+struct Pinhole : Perspective<false> {
     static constexpr ModelText TEXT = {"pinhole", "", "0", "", "central", ""};
 };
 

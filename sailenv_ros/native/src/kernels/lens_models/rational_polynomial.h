@@ -5,7 +5,7 @@
 
 namespace sailenv {
 
-struct RationalPolynomial : Perspective {
+struct RationalPolynomial : Perspective<true> {
     static constexpr ModelText TEXT = {"rational_polynomial",
                                        "k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4",
                                        "8 12",
