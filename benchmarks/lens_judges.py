@@ -2,11 +2,14 @@
 
     python benchmarks/lens_judges.py FOLDER
 
-Needs opencv-contrib-python 4.x and pycolmap, and nothing of this project. A row for each model and
-calibrator: views, corners, residual (root of the mean squared distance) [px], errors of focal
-lengths and axis, and how far the two laws are apart over all pixels: median, 95 %, greatest [px].
-A turn of the camera shifts all directions alike, and the boards' poses take it up: the laws are
-compared after the turn that brings them nearest.
+Needs opencv-contrib-python 4.x, SciPy and pycolmap, and nothing of this project. A row for each
+model and calibrator: views, corners, residual (root of the mean squared distance) [px], errors of
+focal lengths and axis, and how far the two laws are apart over all pixels: median, 95 %, greatest
+[px]. A turn of the camera shifts all directions alike, and the boards' poses take it up: the laws
+are compared after the turn that brings them nearest.
+
+Each calibrator begins with the corners as OpenCV finds them, and gets them again as `lens_corners`
+locates them with what it has found itself, in three rounds. Views that it left out stay out.
 """
 
 from __future__ import annotations
@@ -18,118 +21,87 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import cv2
 import numpy as np
+from lens_corners import LEAST_CORNERS, Project, View, angles, detected, enough, located
 
-SIDE_M, SQUARES, WIDE_SQUARES = 1.04, 12, 8
-WIDE = "equidistant", "mei"
-LEAST_CORNERS = 8
-WRONG_POSE = 10.0
-"""As often the median residual, or more, has a view whose pose is the wrong one of two."""
+ROUNDS = 3
+FARTHER = 1.1
+"""As far as the last corner that a law was found from, it is trusted."""
+WRONG_POSE, FAR_OFF = 10.0, 6.0
+"""As often the median residual, or more, has a view whose pose is the wrong one of two; and a
+corner that was not well located."""
+FISHEYE_DEG = 80.0, 86.0
+"""From the axis to the last corners that `cv2.fisheye` gets: at first, and finally."""
 
 Array: TypeAlias = Any
-Found: TypeAlias = list[tuple[Array, Array]]
-"""Points of the board and their pixels, for each picture."""
 
-Calibrated: TypeAlias = tuple[float, Array, Callable[[Array], Array]]
-"""Residual, matrix, and the law: rays to pixels."""
+
+class Calibrated(NamedTuple):
+    """Result of a calibrator; the poses are (3, 4) from the board, None where it used no view."""
+
+    residual: float
+    matrix: Array
+    project: Project
+    poses: list[Array | None]
+
 
 ACCURATE = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 500, 1e-12)
 CV: Any = cv2
 
 
-def linear_light(picture: Array) -> Array:
-    """Return a picture's light from its sRGB bytes: an edge lies where half of it is left."""
-    share = picture.astype(np.float32) / 255.0
-    light = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-    return (255.0 * light).astype(np.float32)
+def pose_of(turn: Array, shift: Array) -> Array:
+    """Return the (3, 4) pose of a turn's vector and a shift."""
+    return np.hstack([CV.Rodrigues(np.ravel(turn))[0], np.reshape(shift, (3, 1))])
 
 
-def detect(folder: Path, squares: int) -> Found:
-    """Return what was found in each picture in which enough corners were."""
-    dictionary = CV.aruco.getPredefinedDictionary(CV.aruco.DICT_5X5_250)
-    square = SIDE_M / squares
-    board = CV.aruco.CharucoBoard((squares, squares), square, 0.5 * square, dictionary)
-    parameters = CV.aruco.DetectorParameters()
-    parameters.adaptiveThreshWinSizeMax = 63
-    detector = CV.aruco.CharucoDetector(board)
-    detector.setDetectorParameters(parameters)
-    found = []
-    for path in sorted(folder.glob("*.png")):
-        picture = CV.imread(str(path), CV.IMREAD_GRAYSCALE)
-        corners, ids, _, _ = detector.detectBoard(picture)
-        if ids is None or len(ids) < LEAST_CORNERS:
-            continue
-        points = board.getChessboardCorners()[ids.ravel()].astype(np.float64)
-        found.append((points, refined(linear_light(picture), corners.reshape(-1, 2))))
-    return [(points[kept], pixels[kept]) for points, (pixels, kept) in found if kept.any()]
-
-
-def refined(light: Array, corners: Array) -> tuple[Array, Array]:
-    """Return corners to a part of a pixel, and which of them are.
-
-    Each is looked for in a window that holds no other corner, and nothing of a marker.
-    """
-    stop = (CV.TERM_CRITERIA_EPS | CV.TERM_CRITERIA_COUNT, 100, 1e-4)
-    height, width = light.shape
-    apart = np.linalg.norm(corners[:, None] - corners[None], axis=-1)
-    nearest = np.min(apart + np.diag(np.full(len(corners), np.inf)), axis=1)
-    places, kept = np.empty(corners.shape), np.zeros(len(corners), np.bool_)
-    for number, (corner, near) in enumerate(zip(corners, nearest, strict=True)):
-        half = int(min(max(0.17 * near, 2.0), 8.0))
-        start = corner.astype(np.float32).reshape(1, 1, 2)
-        for _ in range(2):
-            start = CV.cornerSubPix(light, start, (half, half), (-1, -1), stop)
-        x, y = places[number] = start.reshape(2)
-        inside = half + 1 <= x < width - half - 2 and half + 1 <= y < height - half - 2
-        kept[number] = inside and near > 14.0 and math.dist((x, y), corner) < 2.0
-    return places, kept
-
-
-def brown(found: Found, size: tuple[int, int], flags: int) -> Calibrated:
+def brown(views: Sequence[View], size: tuple[int, int], flags: int) -> Calibrated:
     """Calibrate by `cv2.calibrateCamera`."""
-    objects = [points.astype(np.float32).reshape(-1, 1, 3) for points, _ in found]
-    images = [pixels.astype(np.float32).reshape(-1, 1, 2) for _, pixels in found]
-    rms, matrix, law, _, _ = CV.calibrateCamera(
+    objects = [view.points.astype(np.float32).reshape(-1, 1, 3) for view in views]
+    images = [view.pixels.astype(np.float32).reshape(-1, 1, 2) for view in views]
+    rms, matrix, law, turns, shifts = CV.calibrateCamera(
         objects, images, size, None, None, flags=flags, criteria=ACCURATE
     )
     still = np.zeros(3)
-    return (
-        rms,
-        matrix,
-        lambda rays: CV.projectPoints(rays, still, still, matrix, law)[0].reshape(-1, 2),
-    )
+
+    def project(points: Array) -> Array:
+        places = CV.projectPoints(points, still, still, matrix, law)[0].reshape(-1, 2)
+        return np.where(points[:, 2:] > 0.0, places, np.nan)
+
+    return Calibrated(rms, matrix, project, list(map(pose_of, turns, shifts)))
 
 
-def fisheye(found: Found, size: tuple[int, int]) -> Calibrated:
+def fisheye(views: Sequence[View], size: tuple[int, int]) -> Calibrated:
     """Calibrate by `cv2.fisheye.calibrate`.
 
     It begins in the plane at depth 1, so it gets a first guess and no points near 90°.
     """
-    guess, middle = size[1] / math.radians(150.0), 0.5 * np.array(size)
-    reach = guess * math.radians(80.0)
-    objects, images = [], []
-    for points, pixels in found:
-        near = np.hypot(*(pixels - middle).T) < reach
-        if near.sum() >= LEAST_CORNERS:
-            objects.append(points[near].reshape(1, -1, 3))
-            images.append(pixels[near].reshape(1, -1, 2))
-    options = CV.fisheye
-    flags = options.CALIB_RECOMPUTE_EXTRINSIC | options.CALIB_FIX_SKEW
+    guess, options = size[1] / math.radians(150.0), CV.fisheye
     matrix, law = np.diag([guess, guess, 1.0]), np.zeros((4, 1))
-    matrix[:2, 2] = middle
-    rms, matrix, law, _, _ = options.calibrate(
-        objects,
-        images,
-        size,
-        matrix,
-        law,
-        flags=flags | options.CALIB_USE_INTRINSIC_GUESS,
-        criteria=ACCURATE,
-    )
-    return rms, matrix, partial(fisheye_law, matrix, law.ravel())
+    matrix[:2, 2] = 0.5 * np.array(size)
+    flags = options.CALIB_RECOMPUTE_EXTRINSIC | options.CALIB_FIX_SKEW
+    for farthest in FISHEYE_DEG:
+        angle = math.radians(farthest)
+        edge = fisheye_law(matrix, law.ravel(), np.array([[math.sin(angle), 0.0, math.cos(angle)]]))
+        near = [
+            np.hypot(*(view.pixels - matrix[:2, 2]).T) < edge[0, 0] - matrix[0, 2] for view in views
+        ]
+        used = [n for n, inside in enumerate(near) if inside.sum() >= LEAST_CORNERS]
+        rms, matrix, law, turns, shifts = options.calibrate(
+            [views[n].points[near[n]].reshape(1, -1, 3) for n in used],
+            [views[n].pixels[near[n]].reshape(1, -1, 2) for n in used],
+            size,
+            matrix,
+            law,
+            flags=flags | options.CALIB_USE_INTRINSIC_GUESS,
+            criteria=ACCURATE,
+        )
+    poses: list[Array | None] = [None] * len(views)
+    for n, turn, shift in zip(used, turns, shifts, strict=True):
+        poses[n] = pose_of(turn, shift)
+    return Calibrated(rms, matrix, partial(fisheye_law, matrix, law.ravel()), poses)
 
 
 def fisheye_law(matrix: Array, law: Array, rays: Array) -> Array:
@@ -143,50 +115,60 @@ def fisheye_law(matrix: Array, law: Array, rays: Array) -> Array:
     return places * matrix[[0, 1], [0, 1]] + matrix[:2, 2]
 
 
-def omnidir(found: Found, size: tuple[int, int]) -> Calibrated:
+def omnidir(views: Sequence[View], size: tuple[int, int]) -> Calibrated:
     """Calibrate by `cv2.omnidir.calibrate`, twice.
 
     A flat board has two poses of nearly the same picture, and this calibrator's first guess can be
-    the wrong one, which it never leaves. Such views are left out of the second run, and told.
+    the wrong one, which it never leaves. Such views are left out of the second run, and told; so
+    are corners that lie far off, of which this calibrator bears none.
     """
-    objects = [points.reshape(1, -1, 3) for points, _ in found]
-    images = [pixels.reshape(1, -1, 2) for _, pixels in found]
+    kept = np.arange(len(views))
+    corners = [(view.points, view.pixels) for view in views]
     for last in (False, True):
         rms, matrix, xi, law, turns, shifts, used = CV.omnidir.calibrate(
-            objects, images, size, None, None, None, CV.omnidir.CALIB_FIX_SKEW, ACCURATE
+            [corners[n][0].reshape(1, -1, 3) for n in kept],
+            [corners[n][1].reshape(1, -1, 2) for n in kept],
+            size,
+            None,
+            None,
+            None,
+            CV.omnidir.CALIB_FIX_SKEW,
+            ACCURATE,
         )
-        mirror, still = float(np.ravel(xi)[0]), np.zeros(3)
+        kept, mirror = kept[np.ravel(used)], float(np.ravel(xi)[0])
+        project = partial(mirror_law, matrix, mirror, law.reshape(1, 4))
+        found = list(map(pose_of, turns, shifts))
         if last:
             break
-        views = np.ravel(used)
-        residuals = [
-            _residual(objects[view], images[view], turn, shift, (matrix, mirror, law))
-            for view, turn, shift in zip(views, turns, shifts, strict=True)
-        ]
-        kept = views[residuals < WRONG_POSE * np.median(residuals)]
-        if len(kept) < len(found):
-            print(f"cv2.omnidir: {len(found) - len(kept)} views left out", file=sys.stderr)
-        objects, images = [objects[view] for view in kept], [images[view] for view in kept]
-
-    def project(rays: Array) -> Array:
-        places, _ = CV.omnidir.projectPoints(
-            rays.reshape(1, -1, 3), still, still, matrix, mirror, law.reshape(1, 4)
-        )
-        return places.reshape(-1, 2)
-
-    return rms, matrix, project
+        off = [_off(views[n], project, pose) for n, pose in zip(kept, found, strict=True)]
+        median = np.median(np.concatenate(off))
+        right = np.array([np.median(each) < WRONG_POSE * median for each in off])
+        if not right.all():
+            print(f"cv2.omnidir: {(~right).sum()} views left out", file=sys.stderr)
+        for n, each in zip(kept, off, strict=True):
+            near = each < FAR_OFF * median
+            corners[n] = views[n].points[near], views[n].pixels[near]
+        kept = kept[right]
+    poses: list[Array | None] = [None] * len(views)
+    for n, pose in zip(kept, found, strict=True):
+        poses[n] = pose
+    return Calibrated(rms, matrix, project, poses)
 
 
-def _residual(
-    points: Array, pixels: Array, turn: Array, shift: Array, lens: tuple[Array, float, Array]
-) -> float:
-    """Return the root of the mean squared distance of a view's corners [px]."""
-    matrix, mirror, law = lens
-    places, _ = CV.omnidir.projectPoints(points, turn, shift, matrix, mirror, law)
-    return float(np.sqrt(((places.reshape(-1, 2) - pixels.reshape(-1, 2)) ** 2).sum(1).mean()))
+def mirror_law(matrix: Array, mirror: float, law: Array, rays: Array) -> Array:
+    """Return pixels of rays."""
+    still = np.zeros(3)
+    places, _ = CV.omnidir.projectPoints(rays.reshape(1, -1, 3), still, still, matrix, mirror, law)
+    return places.reshape(-1, 2)
 
 
-def colmap(name: str, found: Found, size: tuple[int, int]) -> Calibrated:
+def _off(view: View, project: Project, pose: Array) -> Array:
+    """Return how far each corner of a view lies from where the law has it [px]."""
+    places = project(np.ascontiguousarray(view.points @ pose[:, :3].T + pose[:, 3]))
+    return np.linalg.norm(places - view.pixels, axis=1)
+
+
+def colmap(name: str, views: Sequence[View], size: tuple[int, int]) -> Calibrated:
     """Calibrate by COLMAP's bundle adjustment over the board's points, which stay.
 
     It begins as `cv2.calibrateCamera` or `cv2.fisheye.calibrate` do: from a rough focal length.
@@ -203,9 +185,11 @@ def colmap(name: str, found: Found, size: tuple[int, int]) -> Calibrated:
     scene.add_camera_with_trivial_rig(camera)
     camera = scene.cameras[1]
     # It wants each point to be seen twice.
-    times = Counter(point for points, _ in found for point in map(tuple, points))
-    kept = [[times[point] > 1 for point in map(tuple, points)] for points, _ in found]
-    found = [(points[k], pixels[k]) for (points, pixels), k in zip(found, kept, strict=True)]
+    times = Counter(point for view in views for point in map(tuple, view.points))
+    found = []
+    for view in views:
+        kept = [times[point] > 1 for point in map(tuple, view.points)]
+        found.append((view.points[kept], view.pixels[kept]))
     numbers: dict[tuple[float, ...], int] = {}
     for points, _ in found:
         for point in map(tuple, points):
@@ -234,17 +218,33 @@ def colmap(name: str, found: Found, size: tuple[int, int]) -> Calibrated:
     camera = scene.cameras[1]
     fx, fy, cx, cy = camera.params[:4]
     matrix = np.array([[fx, 0.0, cx - 0.5], [0.0, fy, cy - 0.5], [0.0, 0.0, 1.0]])
-    squares = []
-    for number, (points, pixels) in enumerate(found, 1):
-        seen = scene.images[number].cam_from_world() * points
-        squares.append(((camera.img_from_cam(seen) - 0.5 - pixels) ** 2).sum(axis=1))
-    law: Callable[[Array], Array] = lambda rays: camera.img_from_cam(rays) - 0.5  # noqa: E731
+    law: Project = lambda rays: camera.img_from_cam(rays) - 0.5  # noqa: E731
     if wide:
         law = partial(fisheye_law, matrix, camera.params[4:])
-    return math.sqrt(np.concatenate(squares).mean()), matrix, law
+    squares, poses = [], []
+    for number, (points, pixels) in enumerate(found, 1):
+        pose = scene.images[number].cam_from_world()
+        poses.append(pose.matrix())
+        squares.append(((law(pose * points) - pixels) ** 2).sum(axis=1))
+    return Calibrated(math.sqrt(np.concatenate(squares).mean()), matrix, law, poses)
 
 
-def apart_after_turn(project: Callable[[Array], Array], rays: Array, places: Array) -> Array:
+def in_rounds(
+    calibrate: Callable[..., Calibrated], views: list[View], size: tuple[int, int]
+) -> tuple[Calibrated, list[View]]:
+    """Return what a calibrator finds finally, and from which corners."""
+    found = calibrate(views, size)
+    for _ in range(ROUNDS):
+        posed = [
+            (view, pose) for view, pose in zip(views, found.poses, strict=True) if pose is not None
+        ]
+        last = FARTHER * max(angles(view.points, pose).max() for view, pose in posed)
+        views = enough([located(view, found.project, pose, last) for view, pose in posed])
+        found = calibrate(views, size)
+    return found, views
+
+
+def apart_after_turn(project: Project, rays: Array, places: Array) -> Array:
     """Return distances [px] of the law's pixels from the true places, after the best turn."""
     turn = np.zeros(3)
 
@@ -291,22 +291,24 @@ def main() -> None:
         if not (folder / "truth.json").exists():
             continue
         lens = json.loads((folder / "truth.json").read_text())["lens"]
-        found = detect(folder, WIDE_SQUARES if model in WIDE else SQUARES)
+        first = detected(folder)
         truth = np.array(lens["K"])
         places, rays = (
             np.ascontiguousarray(part)
             for part in np.split(np.load(folder / "rays.npy"), [2], axis=1)
         )
-        corners = sum(len(pixels) for _, pixels in found)
         for name, calibrate in calibrators:
-            rms, matrix, project = calibrate(found, (lens["width"], lens["height"]))
+            size = lens["width"], lens["height"]
+            (rms, matrix, project, _), views = in_rounds(calibrate, first, size)
+            corners = sum(len(view.points) for view in views)
             focal = max(abs(matrix[k, k] / truth[k, k] - 1) for k in (0, 1))
             axis = max(abs(matrix[k, 2] / truth[k, 2] - 1) for k in (0, 1))
             apart = apart_after_turn(project, rays, places)
             low, high, most = np.percentile(apart, [50, 95, 100])
             print(
-                f"|{model}|{name}|{len(found)}|{corners}|{rms:.3f}|{100 * focal:.3f} %|"
-                f"{100 * axis:.3f} %|{low:.3f}, {high:.3f}, {most:.3f}|"
+                f"|{model}|{name}|{len(views)}|{corners}|{rms:.3f}|{100 * focal:.3f} %|"
+                f"{100 * axis:.3f} %|{low:.3f}, {high:.3f}, {most:.3f}|",
+                flush=True,
             )
 
 

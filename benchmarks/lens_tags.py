@@ -2,10 +2,11 @@
 
     python benchmarks/lens_tags.py FOLDER
 
-Needs opencv-contrib-python 4.x and pupil-apriltags, and nothing of this project. The detector knows
-pin-holes alone: OpenCV rectifies the pictures by K and D of the lens, into a camera that looks at
-the board. A row for each model: tags, errors of the direction of their axes [deg] and of their
-places [% of the distance]: median, 95 %, greatest.
+Needs opencv-contrib-python 4.x, SciPy and pupil-apriltags, and nothing of this project. The
+detector knows pin-holes alone: OpenCV rectifies the pictures by K and D of the lens, into a camera
+that looks at the board. Tags are judged whose sides have 100 px or more in the picture itself, and
+which are 10 px or more from its border. A row for each model: tags, errors of the direction of
+their axes [deg] and of their places [% of the distance]: median, 95 %, greatest.
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ from typing import Any, TypeAlias
 
 import cv2
 import numpy as np
-from lens_judges import linear_light
+from lens_corners import root_light
 from pupil_apriltags import Detector
 
 SIDE_M, MODULES, TAG_MODULES, TAGS = 1.04, 32, 8, 3
 MODULE_M = SIDE_M / MODULES
 SIZE_PX, FOCAL_PX = 1600, 900.0
-LEAST_SIDE_PX = 60.0
-"""Smaller tags are left out: their corners are known to a tenth of a pixel at best."""
+LEAST_SIDE_PX, MARGIN_PX = 100.0, 10.0
+"""Smaller tags are left out, and those that come nearer to the picture's border."""
 
 Array: TypeAlias = Any
 CV: Any = cv2
@@ -39,18 +40,41 @@ def turned_to(pose: Array) -> Array:
     return np.stack([right, np.cross(ahead, right), ahead])
 
 
-def rectified(light: Array, lens: dict[str, Any], turn: Array, inner: Array) -> Array:
-    """Return a picture as a pin-hole of matrix `inner` sees it, that is turned."""
+def rectification(lens: dict[str, Any], turn: Array, inner: Array) -> Array:
+    """Return two maps: where a pin-hole of matrix `inner`, that is turned, finds its pixels."""
     K, D, size = np.array(lens["K"]), np.array(lens["D"]), (SIZE_PX, SIZE_PX)
     if lens["model"] == "equidistant":
-        maps = CV.fisheye.initUndistortRectifyMap(K, D, turn, inner, size, CV.CV_32FC1)
-    elif lens["model"] == "mei":
-        maps = CV.omnidir.initUndistortRectifyMap(
+        return CV.fisheye.initUndistortRectifyMap(K, D, turn, inner, size, CV.CV_32FC1)
+    if lens["model"] == "mei":
+        return CV.omnidir.initUndistortRectifyMap(
             K, D[1:], D[:1], turn, inner, size, CV.CV_32FC1, CV.omnidir.RECTIFY_PERSPECTIVE
         )
-    else:
-        maps = CV.initUndistortRectifyMap(K, D, turn, inner, size, CV.CV_32FC1)
-    return CV.remap(light, *maps, CV.INTER_LANCZOS4)
+    return CV.initUndistortRectifyMap(K, D, turn, inner, size, CV.CV_32FC1)
+
+
+def from_black(root: Array, found: list[Any]) -> Array:
+    """Return the root of light above that of the tags' black, which shines a little.
+
+    Else soft edges seem to lie farther out.
+    """
+    inside = np.zeros(root.shape, np.uint8)
+    for tag in found:
+        CV.fillConvexPoly(inside, np.rint(tag.corners).astype(np.int32), 1)
+    black = np.percentile(root[inside > 0], 5) if inside.any() else 0.0
+    return np.sqrt(np.maximum(root**2 - black**2, 0.0))
+
+
+def usable(tag: Any, size: tuple[int, int], maps: Array | None) -> bool:
+    """Return whether a tag is one of the board's, large enough and whole in the picture."""
+    corners = tag.corners - 0.5
+    if maps is not None:
+        if np.minimum(corners, SIZE_PX - 1 - corners).min() < MARGIN_PX:
+            return False
+        columns, rows = np.rint(corners).astype(int).T
+        corners = np.stack([each[rows, columns] for each in maps], axis=1)
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
+    beside = np.minimum(corners, np.array(size) - 1 - corners).min()
+    return bool(tag.tag_id < TAGS * TAGS and sides.min() >= LEAST_SIDE_PX and beside >= MARGIN_PX)
 
 
 def tag_in_board(number: int) -> Array:
@@ -71,18 +95,20 @@ def main() -> None:
         lens, poses = truth["lens"], np.array(truth["poses"])
         angles, places = [], []
         for path, pose in zip(sorted(folder.glob("*.png")), poses, strict=True):
-            light = linear_light(CV.imread(str(path), CV.IMREAD_GRAYSCALE))
-            turn, used = np.eye(3), np.array(lens["K"])
+            root = root_light(CV.imread(str(path), CV.IMREAD_GRAYSCALE))
+            size, maps, turn, used = root.shape[::-1], None, np.eye(3), np.array(lens["K"])
             if lens["model"] != "pinhole":
                 turn, used = turned_to(pose), inner
-                light = rectified(light, lens, turn, inner)
-            picture = np.clip(np.rint(light), 0, 255).astype(np.uint8)
+                maps = rectification(lens, turn, inner)
+                root = CV.remap(root, *maps, CV.INTER_LANCZOS4)
             # The detector counts from the picture's corner, half a pixel from OpenCV.
             camera = used[0, 0], used[1, 1], used[0, 2] + 0.5, used[1, 2] + 0.5
-            found = detector.detect(picture, True, camera, TAG_MODULES * MODULE_M)
+            found: list[Any] = []
+            for _ in range(2):
+                picture = np.clip(np.rint(from_black(root, found)), 0, 255).astype(np.uint8)
+                found = detector.detect(picture, True, camera, TAG_MODULES * MODULE_M)
             for tag in found:
-                sides = np.linalg.norm(tag.corners - np.roll(tag.corners, 1, axis=0), axis=1)
-                if tag.tag_id >= TAGS * TAGS or sides.min() < LEAST_SIDE_PX:
+                if not usable(tag, size, maps):
                     continue
                 true = turn @ pose[:3, :3]
                 place = turn @ (pose[:3, :3] @ tag_in_board(tag.tag_id) + pose[:3, 3])

@@ -5,6 +5,7 @@
 Thirty pictures a model of a ChArUco board in a room, and as many of a board of AprilTags; both are
 models that are drawn here and uploaded. Views follow a rule: the board's middle lies in each of
 6 x 5 parts of the picture that the lens sees, at a random distance, turned and tilted at random.
+Boards reach beyond the picture, so corners lie up to its border, and to the image circle's rim.
 Each model's folder gets the pictures and `truth.json`: the lens, and the board's pose in each view.
 With `--topics` the pictures and the lens are those of the ROS topics `rgb` and `camera_info`.
 """
@@ -30,10 +31,12 @@ from sailenv_ros.types.geometry import BODY_FROM_OPTICAL
 from sailenv_ros.types.picture_settings import PictureSettings
 
 ACROSS, DOWN = 6, 5
-SIDE_M, TEXELS = 1.04, 2048
-SQUARES, WIDE_SQUARES = 12, 8
-"""Of the ChArUco board's sides; fewer for lenses that make things small."""
-MODULE_TEXELS, TAG_MODULES, TAGS = 64, 8, 3
+SIDE_M, TEXELS = 1.04, 1024
+SQUARES = 16
+"""Of the ChArUco board's sides: each is a whole number of texels, also in coarser levels."""
+MODULE_TEXELS, TAG_MODULES, TAGS = 32, 8, 3
+FINER = 3
+"""As often as boards have texels they are drawn, before they are made soft."""
 
 LENSES: dict[str, dict[str, Any]] = {
     "pinhole": {"fx_px": 1010.0, "fy_px": 989.0},
@@ -91,40 +94,45 @@ BOARD_IN_WORLD = np.array(
 )
 """(4, 4): the board's middle; x to the right as it is read, y down, z away from the reader."""
 
-BLUR_TEXELS = 2.5
+BLUR_TEXELS = 2.0
 """Standard deviation of the boards' edges: pixels can tell where soft ones lie."""
 
 Look = Callable[[Pose], NDArray[np.uint8]]
 """From the camera's pose to its picture, RGB."""
 
 
-def charuco_texture(squares: int) -> NDArray[np.uint8]:
-    """Return a board of so many squares along each side."""
+def charuco_texture() -> NDArray[np.uint8]:
+    """Return the ChArUco board."""
     dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_5X5_250)
-    square = SIDE_M / squares
-    board = cv2.aruco.CharucoBoard((squares, squares), square, 0.5 * square, dictionary)
-    size = 3 * TEXELS  # a whole number for each square
+    square = SIDE_M / SQUARES
+    board = cv2.aruco.CharucoBoard((SQUARES, SQUARES), square, 0.5 * square, dictionary)
+    size = FINER * TEXELS  # a whole number for each square
     return blurred(np.asarray(board.generateImage((size, size)), np.uint8))
 
 
 def tags_texture() -> NDArray[np.uint8]:
     """Return 3 x 3 tags of the family 36h11, two modules apart."""
     dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
-    size = TAG_MODULES * MODULE_TEXELS
-    texture = np.full((TEXELS, TEXELS), 255, np.uint8)
+    module = FINER * MODULE_TEXELS
+    size = TAG_MODULES * module
+    texture = np.full((FINER * TEXELS, FINER * TEXELS), 255, np.uint8)
     for number in range(TAGS * TAGS):
         row, column = divmod(number, TAGS)
-        top, left = (MODULE_TEXELS * (2 + (TAG_MODULES + 2) * k) for k in (row, column))
+        top, left = (module * (2 + (TAG_MODULES + 2) * k) for k in (row, column))
         tag = cv2.aruco.generateImageMarker(dictionary, number, size)
         texture[top : top + size, left : left + size] = tag
     return blurred(texture)
 
 
 def blurred(texture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Return a pattern of black and white in sRGB, whose light passes softly from one to other."""
-    blur = BLUR_TEXELS * len(texture) / TEXELS
-    light = cv2.GaussianBlur(texture / 255.0, (0, 0), blur, borderType=cv2.BORDER_REPLICATE)
-    light = cv2.resize(light, (TEXELS, TEXELS), interpolation=cv2.INTER_AREA)
+    """Return a pattern of black and white in sRGB, whose edges are soft.
+
+    The root of light passes alike from black to white on either side of an edge. Renderers filter
+    textures in this measure, so an edge stays where it is, seen from near or from far.
+    """
+    blur = BLUR_TEXELS * FINER
+    root = cv2.GaussianBlur(texture / 255.0, (0, 0), blur, borderType=cv2.BORDER_REPLICATE)
+    light = cv2.resize(root, (TEXELS, TEXELS), interpolation=cv2.INTER_AREA) ** 2
     encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     return np.rint(255.0 * encoded).astype(np.uint8)
 
@@ -156,17 +164,17 @@ def turn(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
     return np.asarray(matrix, np.float64)
 
 
-def views(lens: CameraIntrinsics, seed: int, large: bool) -> list[NDArray[np.float64]]:
+def views(lens: CameraIntrinsics, seed: int) -> list[NDArray[np.float64]]:
     """Return (4, 4) poses of the board in the optical frame, its z axis away from the camera.
 
-    With `large` boards are nearer to lenses that make things small.
+    Boards are nearer to lenses that make things small.
     """
     random = np.random.default_rng(seed)
     rows, columns = np.nonzero(lens.valid_pixels())
     left, top = columns.min(), rows.min()
     wide, high = np.ptp(columns) / ACROSS, np.ptp(rows) / DOWN
     per_rad = 1e3 * (lens.project([1e-3, 0.0, 1.0])[0] - lens.cx)
-    near = min(1.0, per_rad / 700.0) if large else 1.0
+    near = min(1.0, per_rad / 700.0)
     found: list[NDArray[np.float64]] = []
     while len(found) < ACROSS * DOWN:
         down, across = divmod(len(found), ACROSS)
@@ -177,7 +185,7 @@ def views(lens: CameraIntrinsics, seed: int, large: bool) -> list[NDArray[np.flo
         while np.isnan(ray[0]):
             place += 0.02 * (np.array([lens.cx, lens.cy]) - place)
             ray = lens.unit_rays_through(place)
-        distance = near * random.uniform(0.55, 1.1)
+        distance = near * random.uniform(0.5, 1.2)
         # The board's z axis leads away from us.
         away = turn(random.normal(size=3), math.radians(random.uniform(10, 40))) @ ray
         if away @ ray < 0.6:
@@ -270,18 +278,21 @@ def _stamp_ns(message: Any) -> int:
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
-def write_views(folder: Path, lens: CameraIntrinsics, look: Look, seed: int, large: bool) -> None:
+def write_views(folder: Path, lens: CameraIntrinsics, look: Look, seed: int) -> None:
     """Write the pictures of one board through one lens, and what is true of them."""
     folder.mkdir(parents=True, exist_ok=True)
-    poses = views(lens, seed, large)
+    poses, size = views(lens, seed), (lens.width, lens.height)
     for number, board_pose in enumerate(poses):
         # The board stays; the camera goes to where it is seen as drawn.
         world = BOARD_IN_WORLD @ np.linalg.inv(board_pose) @ BODY_FROM_OPTICAL.T
         picture = look(Pose.from_matrix(world))
         cv2.imwrite(str(folder / f"{number:02}.png"), picture[..., ::-1])
-    valid = lens.valid_pixels()
-    places = np.argwhere(valid)[::97, ::-1].astype(np.float64)
-    np.save(folder / "rays.npy", np.hstack([places, lens.unit_rays()[valid][::97]]))
+    # Pixels in a grid from border to border.
+    columns, rows = np.meshgrid(*(np.rint(np.linspace(0, n - 1, n // 6)) for n in size))
+    places = np.stack([columns, rows], axis=-1).reshape(-1, 2)
+    rays = lens.unit_rays_through(places)
+    seen = ~np.isnan(rays[:, 0])
+    np.save(folder / "rays.npy", np.hstack([places, rays])[seen])
     numbers = {"width": lens.width, "height": lens.height, "model": lens.distortion_model}
     truth = {"lens": {**numbers, "K": lens.K.tolist(), "D": lens.D.tolist()}}
     found = {**truth, "poses": [pose.tolist() for pose in poses]}
@@ -294,27 +305,21 @@ def main() -> None:
     parser.add_argument("output", type=Path)
     parser.add_argument("--models", nargs="+", default=list(LENSES), choices=list(LENSES))
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--boards", nargs="+", default=["charuco", "tags"])
+    parser.add_argument(
+        "--boards", nargs="+", default=["charuco", "tags"], choices=["charuco", "tags"]
+    )
     parser.add_argument("--topics", action="store_true")
     args = parser.parse_args()
     args.output.mkdir(parents=True, exist_ok=True)
     scene = args.output.resolve() / "scene.yaml"
     scene.write_text(SCENE)
-    wide = [model for model in args.models if "max_angle_deg" in LENSES[model]]
-    narrow = [model for model in args.models if model not in wide]
-    boards = [
-        ("charuco", charuco_texture(SQUARES), narrow),
-        ("charuco", charuco_texture(WIDE_SQUARES), wide),
-        ("tags", tags_texture(), args.models),
-    ]
+    boards = {"charuco": charuco_texture, "tags": tags_texture}
     open_room = through_topics if args.topics else in_process
-    for board, texture, models in boards:
-        if not models or board not in args.boards:
-            continue
-        with open_room(scene, texture) as camera:
-            for model in models:
-                folder, large = args.output / board / model, board == "tags"
-                write_views(folder, lens_of(model), camera(model), args.seed, large)
+    for board in args.boards:
+        with open_room(scene, boards[board]()) as camera:
+            for model in args.models:
+                folder = args.output / board / model
+                write_views(folder, lens_of(model), camera(model), args.seed)
                 print(board, model)
 
 
