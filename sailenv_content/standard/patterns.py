@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
 from sailenv_ros.types.model import Texture
 
 __all__ = ["PATTERNS", "Pattern", "pattern_maps"]
@@ -24,6 +25,8 @@ GRAIN_PX = 1024
 
 RINGS = 14
 """Growth rings between what is of mean height in the landscape of wood and its ridges."""
+
+_CODE = "../sailenv_content/standard"
 
 Field = NDArray[np.float64]
 
@@ -57,7 +60,12 @@ def pattern_maps(pattern: Pattern) -> Mapping[str, Texture]:
 
 @cache
 def _maps(name: str) -> Mapping[str, Texture]:
-    pattern = PATTERNS[name]
+    """Return the textures of a pattern, kept on disk: wood takes half a second."""
+    code = code_digest(_CODE, libraries=("scipy",))
+    return cached_arrays("pattern", (name,), lambda: _drawn(PATTERNS[name]), code=code)
+
+
+def _drawn(pattern: Pattern) -> Arrays:
     height = pattern.height()
     bright = 1.0 - pattern.shade * (1.0 - height)
     pixels = np.full((*height.shape, 4), 255, np.uint8)

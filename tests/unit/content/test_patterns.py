@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_content.standard import patterns
 from sailenv_content.standard.patterns import PATTERNS, pattern_maps
 
 GRAIN = PATTERNS["grain"]
@@ -54,3 +57,17 @@ def test_flat_sawn_arches_are_there_too() -> None:
     steep = np.hypot(up, right) > np.percentile(np.hypot(up, right), 50.0)
     crossing = (np.abs(right) > 0.5 * np.abs(up)) & steep
     assert 0.005 < crossing[steep].mean() < 0.1
+
+
+def test_tiles_are_made_once_for_all_processes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What another process finds on disk has the same bytes, and nobody draws it again."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    before = patterns._maps.__wrapped__("terry")
+    monkeypatch.setattr(patterns, "_drawn", None)
+    after = patterns._maps.__wrapped__("terry")
+    assert before.keys() == after.keys()
+    for name, texture in before.items():
+        np.testing.assert_array_equal(after[name], texture)
+        assert not after[name].flags.writeable
