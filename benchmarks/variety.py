@@ -1,10 +1,15 @@
-"""Whether variety helps: a small net learns from generated rooms, or from three fixed ones.
+"""Whether variety helps: a small net learns from rooms of one kind, or of another.
 
-    python -m benchmarks.variety make DIR         # three data sets, with sailenv_ros
+    python -m benchmarks.variety make DIR         # data sets, with sailenv_ros
     judges/bin/python benchmarks/variety.py train DIR      # with PyTorch, without sailenv_ros
 
-Both nets are the same, begin with the same numbers and see as many frames in as many steps; both
-are tested on rooms that neither has seen. Frames are 160 x 120, light is plain (not baked).
+Two comparisons. Rooms: three fixed ones against a hundred from seeds; the test is of other seeds.
+Pieces: a hundred rooms with the catalogue's furniture against the same rooms with pieces from
+seeds. Their tests are rooms of other seeds, half of them with catalogue furniture that no room of
+training has (that of even numbers), half with pieces of other seeds.
+
+All nets are the same, begin with the same numbers and see as many frames in as many steps. Frames
+are 160 x 120, light is plain (not baked).
 """
 
 from __future__ import annotations
@@ -13,6 +18,7 @@ import json
 import sys
 import tarfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,41 +29,88 @@ KINDS = ("living_room", "bedroom")
 FRAMES, TEST_FRAMES = 2000, 400
 ROOMS, TEST_ROOMS = 100, 20
 STEPS, BATCH = 600, 16
+COMPARISONS = (
+    (("fixed", "generated"), ("test",)),
+    (("catalogue", "seeds"), ("other_catalogue", "other_seeds")),
+)
+WORKERS = 2
 
 
 def make(folder: Path) -> None:
-    """Make the three data sets, each into a folder of its own."""
-    import yaml
-
-    from sailenv_ros.dataset import engine_of, load_job, make_dataset
+    """Make the data sets, each into a folder of its own."""
 
     def generated(first: int, count: int) -> list[dict[str, Any]]:
         half = count // len(KINDS)
         return [{"generate": kind, "seeds": [first, first + half - 1]} for kind in KINDS]
 
+    folder.mkdir(parents=True, exist_ok=True)
     rooms = [{"scene": f"room_0{number}"} for number in (1, 2, 3)]
     for name, scenes, frames in (
         ("test", generated(10_000, TEST_ROOMS), TEST_FRAMES),
         ("fixed", rooms, FRAMES),
         ("generated", generated(0, ROOMS), FRAMES),
+        ("catalogue", _furnished(folder, "catalogue", 20_000, ROOMS), FRAMES),
+        ("seeds", _furnished(folder, "seeds", 20_000, ROOMS), FRAMES),
+        ("other_catalogue", _furnished(folder, "other_catalogue", 30_000, TEST_ROOMS), TEST_FRAMES),
+        ("other_seeds", _furnished(folder, "seeds", 30_000, TEST_ROOMS), TEST_FRAMES),
     ):
-        recipe = {
-            "version": 1,
-            "scenes": scenes,
-            "light": "plain",
-            "clips": {"train": frames},
-            "clip": {"per_scene": 20, "gap": 0.1},
-            "cameras": [{"type": "rule", "rule": "free_view", "width": 160, "height": 120}],
-            "views": ["rgb", "category", "instance"],
-            "formats": ["webdataset"],
-            "shard": {"clips": 100},
-        }
-        folder.mkdir(parents=True, exist_ok=True)
-        path = folder / f"{name}.yaml"
-        path.write_text(yaml.safe_dump(recipe))
-        began = time.monotonic()
-        made = make_dataset(load_job(path), folder / name, engine_of(2, None))
-        print(f"{name}: {made.frames} frames in {time.monotonic() - began:.0f} s", flush=True)
+        _make_set(folder, name, scenes, frames)
+
+
+def _make_set(folder: Path, name: str, scenes: list[dict[str, Any]], frames: int) -> None:
+    import yaml
+
+    from sailenv_ros.dataset import engine_of, load_job, make_dataset
+
+    recipe = {
+        "version": 1,
+        "scenes": scenes,
+        "light": "plain",
+        "clips": {"train": frames},
+        "clip": {"per_scene": 20, "gap": 0.1},
+        "cameras": [{"type": "rule", "rule": "free_view", "width": 160, "height": 120}],
+        "views": ["rgb", "category", "instance"],
+        "formats": ["webdataset"],
+        "shard": {"clips": 100},
+    }
+    path = folder / f"{name}.yaml"
+    path.write_text(yaml.safe_dump(recipe))
+    began = time.monotonic()
+    made = make_dataset(load_job(path), folder / name, engine_of(WORKERS, None))
+    print(f"{name}: {made.frames} frames in {time.monotonic() - began:.0f} s", flush=True)
+
+
+def _furnished(folder: Path, furniture: str, first: int, count: int) -> list[dict[str, Any]]:
+    """Make scene files of rooms whose furniture is of one source, and return their entries."""
+    from sailenv_content.generation.generator import Generator
+    from sailenv_content.generation.pieces import PieceChooser
+    from sailenv_ros.authoring.room_rules.rule_files import ANY_SEED
+
+    def wanted(name: str) -> bool:
+        if furniture == "seeds" or name.endswith(ANY_SEED):
+            return furniture == "seeds" and name.endswith(ANY_SEED)
+        number = name.rpartition("_")[2]
+        even = number.isdigit() and int(number) % 2 == 0
+        return even == (furniture == "other_catalogue")
+
+    def one_of(self: PieceChooser, names: Sequence[str]) -> str:
+        listed = [name for name in names if not name.endswith(ANY_SEED)]
+        some = [name for name in names if wanted(name)] or listed or names
+        return self.chosen(self._dice.one(some))
+
+    entries = []
+    generator, kept = Generator(), PieceChooser.one_of
+    PieceChooser.one_of = one_of  # type: ignore[method-assign]  # the one place that chooses
+    try:
+        for kind in KINDS:
+            for seed in range(first, first + count // len(KINDS)):
+                path = folder / f"{furniture}_{kind}_{seed}.yaml"
+                if not path.exists():
+                    path.write_text(generator.generate(kind, seed).text)
+                entries.append({"scene": path.name})
+    finally:
+        PieceChooser.one_of = kept  # type: ignore[method-assign]
+    return entries
 
 
 def load(folder: Path) -> tuple[Any, Any]:
@@ -90,16 +143,18 @@ def load(folder: Path) -> tuple[Any, Any]:
 
 
 def train(folder: Path) -> None:
-    """Train on either set and print what each net reaches on the rooms of the test."""
-    test = load(folder / "test")
-    print(f"| trained on | mean IoU | {' | '.join(CLASSES)} |")
-    print("|---|" + "---:|" * (1 + len(CLASSES)))
-    for name in ("fixed", "generated"):
-        began = time.monotonic()
-        scores = _tested(_trained(load(folder / name)), test)
-        row = " | ".join(f"{score:.3f}" for score in (np.nanmean(scores), *scores))
-        print(f"| {name} | {row} |", flush=True)
-        print(f"trained in {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
+    """Train on either set of a comparison and print what each net reaches on its tests."""
+    print(f"| trained on | tested on | mean IoU | {' | '.join(CLASSES)} |")
+    print("|---|---|" + "---:|" * (1 + len(CLASSES)))
+    for sets, tests in COMPARISONS:
+        for name in sets:
+            began = time.monotonic()
+            net = _trained(load(folder / name))
+            for test in tests:
+                scores = _tested(net, load(folder / test))
+                row = " | ".join(f"{score:.3f}" for score in (np.nanmean(scores), *scores))
+                print(f"| {name} | {test} | {row} |", flush=True)
+            print(f"trained in {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
 
 
 def _trained(data: tuple[Any, Any]) -> Any:
