@@ -1,4 +1,4 @@
-"""Corners of the ChArUco boards in the pictures of `lens_views.py`, for `lens_judges.py`.
+"""The ChArUco board of `lens_views.py`, and its corners in pictures, for `lens_judges.py`.
 
 Markers tell which corners are seen. Where a corner lies is found as Datta et al. do ("Accurate
 camera calibration using iterative refinement of control points", ICCV Workshops 2009): with a first
@@ -19,6 +19,7 @@ import numpy as np
 from scipy.ndimage import map_coordinates, spline_filter
 
 SIDE_M, SQUARES = 1.04, 16
+"""Of every board, and along each side of this one."""
 LEAST_CORNERS = 8
 HALF, MARGIN = 12, 3
 """Samples from a corner to the end of its window, and from there to the end of what is drawn."""

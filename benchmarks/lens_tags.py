@@ -19,10 +19,10 @@ from typing import Any, TypeAlias
 
 import cv2
 import numpy as np
-from lens_corners import root_light
+from lens_corners import SIDE_M, root_light
 from pupil_apriltags import Detector
 
-SIDE_M, MODULES, TAG_MODULES, TAGS = 1.04, 32, 8, 3
+MODULES, TAG_MODULES, TAGS = 32, 8, 3
 MODULE_M = SIDE_M / MODULES
 SIZE_PX, FOCAL_PX = 1600, 900.0
 LEAST_SIDE_PX, MARGIN_PX = 100.0, 10.0

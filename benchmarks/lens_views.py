@@ -24,6 +24,7 @@ from typing import Any
 
 import cv2
 import numpy as np
+from lens_corners import SIDE_M, charuco
 from numpy.typing import NDArray
 
 from sailenv_ros import Agent, AgentSpec, CameraIntrinsics, Pose, Simulation
@@ -31,9 +32,8 @@ from sailenv_ros.types.geometry import BODY_FROM_OPTICAL
 from sailenv_ros.types.picture_settings import PictureSettings
 
 ACROSS, DOWN = 6, 5
-SIDE_M, TEXELS = 1.04, 1024
-SQUARES = 16
-"""Of the ChArUco board's sides: each is a whole number of texels, also in coarser levels."""
+TEXELS = 1024
+"""A whole number for each square of the ChArUco board, also in coarser levels."""
 MODULE_TEXELS, TAG_MODULES, TAGS = 32, 8, 3
 FINER = 3
 """As often as boards have texels they are drawn, before they are made soft."""
@@ -103,11 +103,8 @@ Look = Callable[[Pose], NDArray[np.uint8]]
 
 def charuco_texture() -> NDArray[np.uint8]:
     """Return the ChArUco board."""
-    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_5X5_250)
-    square = SIDE_M / SQUARES
-    board = cv2.aruco.CharucoBoard((SQUARES, SQUARES), square, 0.5 * square, dictionary)
-    size = FINER * TEXELS  # a whole number for each square
-    return blurred(np.asarray(board.generateImage((size, size)), np.uint8))
+    size = FINER * TEXELS
+    return blurred(np.asarray(charuco().generateImage((size, size)), np.uint8))
 
 
 def tags_texture() -> NDArray[np.uint8]:
