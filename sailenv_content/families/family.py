@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sailenv_content.families.builder import PieceBuilder
-from sailenv_content.families.parameters import Values
+if TYPE_CHECKING:
+    from sailenv_content.families.builder import PieceBuilder
+    from sailenv_content.families.parameters import Values
 
 __all__ = ["Family", "Style"]
 

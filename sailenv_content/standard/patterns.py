@@ -2,6 +2,7 @@
 
 Each is a tile made by code, the same bytes every time: near-white colours that multiply the
 material's, and where it matters a normal map. Coordinates run along the faces, in metres.
+scipy, which loads slowly, is imported by what draws them: they are kept on disk.
 """
 
 from __future__ import annotations
@@ -12,12 +13,11 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
 from sailenv_ros.types.model import Texture
 
-__all__ = ["PATTERNS", "Pattern", "pattern_maps"]
+__all__ = ["PATTERNS", "Pattern", "PatternTextures", "pattern_maps"]
 
 EDGE_PX = 256
 GRAIN_PX = 1024
@@ -58,11 +58,30 @@ def pattern_maps(pattern: Pattern) -> Mapping[str, Texture]:
     return _maps(next(name for name, known in PATTERNS.items() if known is pattern))
 
 
+class PatternTextures:
+    """The textures of the patterns by name, ``PATTERN/ATTRIBUTE``; see `SharedTextures`."""
+
+    def name_of(self, texture: Texture) -> str | None:
+        """Return the name of a texture; None if it is of no pattern."""
+        return _names.get(id(texture))
+
+    def named(self, name: str) -> Texture:
+        """Return a texture by its name; the same object each time."""
+        pattern, _, attribute = name.partition("/")
+        return _maps(pattern)[attribute]
+
+
+_names: dict[int, str] = {}
+"""Names of the textures that were asked for, which are kept, by identity."""
+
+
 @cache
 def _maps(name: str) -> Mapping[str, Texture]:
     """Return the textures of a pattern, kept on disk: wood takes half a second."""
     code = code_digest(_CODE, libraries=("scipy",))
-    return cached_arrays("pattern", (name,), lambda: _drawn(PATTERNS[name]), code=code)
+    maps = cached_arrays("pattern", (name,), lambda: _drawn(PATTERNS[name]), code=code)
+    _names.update((id(texture), f"{name}/{attribute}") for attribute, texture in maps.items())
+    return maps
 
 
 def _drawn(pattern: Pattern) -> Arrays:
@@ -102,6 +121,8 @@ def _noise(seed: int, *sigmas: float | tuple[float, float]) -> Field:
 
 def _layer(generator: np.random.Generator, edge: int, sigma: float | tuple[float, float]) -> Field:
     """Return (edge, edge): smooth noise that wraps around, of deviation 1; sigma in pixels."""
+    from scipy import ndimage
+
     layer = ndimage.gaussian_filter(generator.standard_normal((edge, edge)), sigma, mode="wrap")
     return np.asarray(layer / layer.std())
 
@@ -121,6 +142,8 @@ def _terry() -> Field:
 
 def _leather() -> Field:
     """Grain: cells with creases between them."""
+    from scipy import ndimage
+
     generator = np.random.default_rng(13)
     seeds = np.zeros((EDGE_PX, EDGE_PX), bool)
     seeds[tuple(generator.integers(0, EDGE_PX, (2, 900)))] = True
@@ -140,6 +163,8 @@ def _grain() -> Field:
     2 to 5 mm apart, as on quarter-sawn boards; around its ridges, 10 to 20 cm apart, they make
     the arches of flat-sawn ones.
     """
+    from scipy import ndimage
+
     generator = np.random.default_rng(47)
     coarse = GRAIN_PX // 8
     figure = ndimage.zoom(

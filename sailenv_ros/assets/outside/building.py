@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from sailenv_ros.assets.model_cache import cached_parts
+from sailenv_ros.assets.model_cache import cached_object
 from sailenv_ros.assets.outside.atlas import MEAN_SHARE, model_parts
 from sailenv_ros.assets.outside.corridor import add_corridor
 from sailenv_ros.assets.outside.daylight import Daylight
@@ -98,7 +98,7 @@ def _hole(room: RoomSpec, opening: OpeningSpec) -> tuple[Vector3, Vector3]:
 
 @lru_cache(maxsize=4)
 def _made(room: RoomSpec, daylight: Daylight) -> Asset:
-    parts = cached_parts(
+    parts = cached_object(
         "outside",
         [room.model_dump_json(), daylight],
         lambda: _built(room, daylight),

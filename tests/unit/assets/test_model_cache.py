@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+import subprocess
+import sys
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from sailenv_content.families.making import make_piece
+from sailenv_content.families.names import parsed
+from sailenv_content.families.registry import CODE, family_named, family_names, family_styles
+from sailenv_content.families.source import FamilySource
 from sailenv_content.standard.pack_build import build_standard_pack
 from sailenv_ros.assets import model_cache
 from sailenv_ros.assets.glb import read_glb
+from sailenv_ros.assets.kept_assets import KeptAssets
 from sailenv_ros.assets.model_cache import read_once
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.surfaces import surface_catalogue
 from sailenv_ros.errors import AssetError
 from sailenv_ros.system.array_cache import array_folder
-from sailenv_ros.types.model import ConvexShape, Material, ModelPart
+from sailenv_ros.types.model import Asset
 
 
 @pytest.fixture(scope="module")
@@ -38,10 +45,11 @@ def same(one: object, other: object) -> bool:
     if isinstance(one, tuple):
         assert isinstance(other, tuple)
         return len(one) == len(other) and all(map(same, one, other))
-    if isinstance(one, (ModelPart, Material, ConvexShape)) or hasattr(one, "positions"):
-        names = [field.name for field in fields(one)]  # type: ignore[arg-type]
-        return all(same(getattr(one, name), getattr(other, name)) for name in names)
-    return type(one) is type(other) and one == other
+    if is_dataclass(one):
+        return type(one) is type(other) and all(
+            same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one)
+        )
+    return one == other
 
 
 # Cut-outs, glass, glow, textures of normals, parts of their own, no collision pieces, many meshes.
@@ -106,3 +114,75 @@ def test_a_surface_from_the_cache_is_the_one_that_was_made(name: str) -> None:
     assert same(made.material, again.material)
     assert (made.tile_m, made.turn_deg) == (again.tile_m, again.turn_deg)
     assert not again.material.base_colour_texture.flags.writeable
+
+
+# Joints, glass, glow, patterns with and without normals, prints, hulls, leaves.
+PIECES = (
+    *("wardrobe~classic:4", "kitchen_unit~corner:1", "chest~dresser:2", "picture~row:3"),
+    *("table_lamp~ceramic:1", "plant~tree:2", "sofa~rolled:5", "bath~claw_foot:1"),
+)
+
+
+def fresh(name: str, monkeypatch: pytest.MonkeyPatch) -> Asset:
+    """Load a piece as a process does that has none."""
+    monkeypatch.setattr("sailenv_content.families.source._made", KeptAssets())
+    return FamilySource().load(name)
+
+
+@pytest.mark.parametrize("name", PIECES)
+def test_a_piece_from_the_cache_is_the_one_that_is_made(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wanted = parsed(name)
+    assert wanted is not None
+    made = make_piece(family_named(wanted.family), wanted).asset
+    for _ in range(2):
+        kept = fresh(name, monkeypatch)
+        assert same(made, kept)
+        ways = {"mesh": ids(made, "mesh"), "material": ids(made, "material")}
+        for attribute, before in ways.items():
+            # What was one object is one; materials of equal values may have become one.
+            assert len(set(zip(before, ids(kept, attribute), strict=True))) == len(set(before))
+        assert len(set(ids(kept, "mesh"))) == len(set(ways["mesh"]))
+
+
+def ids(asset: Asset, attribute: str) -> list[int]:
+    """Return the identities of the meshes, or materials, of a piece and of its bodies."""
+    bodies = [asset, *filter(None, [asset.still]), *(one.asset for one in asset.moving)]
+    return [id(getattr(part, attribute)) for body in bodies for part in body.model.parts]
+
+
+def test_the_styles_of_a_family_are_kept() -> None:
+    for name in family_names():
+        family_styles.cache_clear()
+        assert family_styles(name) == tuple(family_named(name).styles)
+
+
+def test_the_code_that_makes_a_piece_is_told_in_its_key() -> None:
+    """Whoever changes it gets other pieces: all modules that families import are in its folders."""
+    code = "import sys\nfrom sailenv_content.families.registry import *\n"
+    code += "for name in family_names(): family_named(name)\n"
+    code += "import sailenv_content.families.making\n"
+    code += "print(*(name for name in sys.modules if name.startswith('sailenv_')))"
+    packages = {name.rpartition(".")[0] for name in run(code).split()}
+    told = {folder.replace("../", "").replace("/", ".") for folder in CODE}
+    of_content = {package for package in packages if package.startswith("sailenv_content.")}
+    assert of_content <= told
+    # What reads scenes, files and lenses has no part in it.
+    others = {package for package in packages - of_content if package.count(".") == 1}
+    others = {package.removeprefix("sailenv_ros.") for package in others} - told
+    assert others == {"native", "scene", "system"}
+
+
+def test_a_kept_piece_needs_neither_scipy_nor_its_family() -> None:
+    """To import them takes longer than all else that a small scene needs."""
+    code = "import sys\nfrom sailenv_content.families.source import FamilySource\n"
+    code += "FamilySource().load('chest~dresser:1')\n"
+    code += "print(*(name in sys.modules for name in ('scipy', 'sailenv_content.families.kinds')))"
+    assert [run(code) for _ in range(2)] == ["True True", "False False"]
+
+
+def run(code: str) -> str:
+    """Run a program of its own; return what it prints."""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
