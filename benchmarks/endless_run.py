@@ -31,7 +31,6 @@ import numpy as np
 
 import sailenv_ros.streams as streams
 from benchmarks.judge_streams import WARM_FRAMES, digest_of, forget_peak, memory_mib
-from sailenv_ros.dataset.streams.endless import LARGEST_KEPT_BYTES
 from sailenv_ros.dataset.worker_pool import WorkerPool
 from sailenv_ros.streams.course import Course, load_course
 from sailenv_ros.system.memory import keep_freed_memory
@@ -79,7 +78,7 @@ class Run:
 
 def _maker(run: Run, on_frame: Callable[[], None]) -> Callable[[int], dict[str, Any]]:
     """Return what makes a part, and its line, in a worker."""
-    keep_freed_memory(LARGEST_KEPT_BYTES)
+    keep_freed_memory(many_scenes=True)
     stream, checked = run.open(), run.checked
 
     def make(part: int) -> dict[str, Any]:

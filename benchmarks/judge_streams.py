@@ -37,7 +37,6 @@ import numpy as np
 import yaml
 
 import sailenv_ros.streams as streams
-from sailenv_ros.dataset.streams.endless import LARGEST_KEPT_BYTES
 from sailenv_ros.streams.plan import HABITS
 from sailenv_ros.system.memory import keep_freed_memory
 
@@ -199,7 +198,7 @@ def judge_avalanche(count: int) -> None:
     from avalanche.models import SimpleCNN
     from avalanche.training.supervised import Naive
 
-    keep_freed_memory(LARGEST_KEPT_BYTES)
+    keep_freed_memory(many_scenes=True)
     stream = streams.open("home", seed=SEED, views=("rgb", "category", "instance"))
     made = []
 
@@ -260,7 +259,7 @@ def judge_stillness(count: int, seed: int, habit: str) -> None:
 
 def measure_memory(count: int, seed: int, episodes: int) -> None:
     """Print the memory of this process after each room, of whose frames few are made."""
-    keep_freed_memory(LARGEST_KEPT_BYTES)
+    keep_freed_memory(many_scenes=True)
     tours: dict[int, tuple[float, float]] = {}
     with streams.open("home", seed=seed) as stream, _MostOwn() as most_own:
         course = stream.course

@@ -242,7 +242,7 @@ def _over_triangles(points: Floats, triangles: NDArray[np.int32], under: Floats)
     return np.asarray(np.where(inside, heights, -np.inf).max(axis=1, initial=-np.inf))
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1024)
 def _triangles_of(shape: CollisionShape) -> NDArray[np.int32]:
     """Return (N, 3): the faces of a shape, as rows of its corners; kept, as scipy loads slowly."""
     if isinstance(shape, TriangleShape):
@@ -255,4 +255,5 @@ def _triangles_of(shape: CollisionShape) -> NDArray[np.int32]:
         return {"faces": np.asarray(ConvexHull(points).simplices, np.int32)}
 
     code = code_digest(libraries=("scipy",))
-    return cached_arrays("hull", [points.tobytes()], hull, code=code)["faces"]
+    # A copy: each mapped file takes pages of its own.
+    return cached_arrays("hull", [points.tobytes()], hull, code=code)["faces"].copy()

@@ -22,9 +22,7 @@ _HELD = ".held"
 
 
 @contextmanager
-def temporary_folder(
-    prefix: str, *, place: Path | None = None, again: Path | None = None
-) -> Iterator[Path]:
+def temporary_folder(prefix: str, *, place: Path | None = None) -> Iterator[Path]:
     """Yield an empty folder that is gone afterwards.
 
     Parameters
@@ -33,8 +31,6 @@ def temporary_folder(
         How its name begins; those of killed processes that begin so are removed.
     place : Path or None
         Folder that it is made in; None means that of temporary files.
-    again : Path or None
-        Folder of an earlier call, whose name it gets if that is free.
 
     Raises
     ------
@@ -43,7 +39,7 @@ def temporary_folder(
     """
     parent = Path(tempfile.gettempdir()) if place is None else place
     _remove_abandoned(parent, prefix)
-    folder, lock = _made(parent, prefix, again)
+    folder, lock = _made(parent, prefix)
     try:
         yield folder
     finally:
@@ -52,16 +48,9 @@ def temporary_folder(
         os.close(lock)
 
 
-def _made(parent: Path, prefix: str, again: Path | None) -> tuple[Path, int]:
+def _made(parent: Path, prefix: str) -> tuple[Path, int]:
     while True:
-        folder = again
-        try:
-            if folder is not None:
-                folder.mkdir(mode=0o700)
-        except FileExistsError:
-            folder = None  # somebody else's: it may hold anything
-        if folder is None:
-            folder = Path(tempfile.mkdtemp(prefix=prefix, suffix=_HELD, dir=parent))
+        folder = Path(tempfile.mkdtemp(prefix=prefix, suffix=_HELD, dir=parent))
         try:
             lock = _opened(folder)
         except FileNotFoundError:

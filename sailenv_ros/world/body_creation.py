@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
-from sailenv_ros.world.collision import build_collision
+from sailenv_ros.world.collision import build_collision, hulls_forgotten
 from sailenv_ros.world.placement import Placement
 
 __all__ = ["ROLLING_FRICTION", "create_rigid_body", "mass_of"]
@@ -34,21 +34,22 @@ def create_rigid_body(
     position_m : (3,) sequence of float
         Where that is in the world [m].
     """
-    shape = build_collision(
-        client,
-        placement.asset.collision,
-        scale=placement.scale,
-        centre_of_mass_m=centre_m,
-        name=placement.name,
-    )
-    body = client.createMultiBody(
-        baseMass=mass_kg,
-        baseCollisionShapeIndex=shape,
-        basePosition=position_m,
-        baseOrientation=placement.pose.orientation_xyzw,
-        # A rigid body, not a tree of links with no link: the engine's step takes half the time.
-        useMaximalCoordinates=1,
-    )
+    with hulls_forgotten(client):
+        shape = build_collision(
+            client,
+            placement.asset.collision,
+            scale=placement.scale,
+            centre_of_mass_m=centre_m,
+            name=placement.name,
+        )
+        body = client.createMultiBody(
+            baseMass=mass_kg,
+            baseCollisionShapeIndex=shape,
+            basePosition=position_m,
+            baseOrientation=placement.pose.orientation_xyzw,
+            # A rigid body, not a tree of links with no link: the engine's step takes half the time.
+            useMaximalCoordinates=1,
+        )
     client.changeDynamics(
         body,
         LINK_OF_BASE,

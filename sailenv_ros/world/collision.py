@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import os
-import tempfile
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
@@ -13,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.system.references import references_given_back
 from sailenv_ros.system.temporary_folders import temporary_folder
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import (
@@ -28,7 +26,7 @@ from sailenv_ros.types.model import (
 )
 from sailenv_ros.world.bullet import BulletClient
 
-__all__ = ["NO_COLLISION", "build_collision"]
+__all__ = ["NO_COLLISION", "build_collision", "hulls_forgotten"]
 
 NO_COLLISION = -1
 """PyBullet's number for a body that nothing collides with."""
@@ -37,14 +35,24 @@ Vector3 = tuple[float, float, float]
 
 _UNTURNED = (0.0, 0.0, 0.0, 1.0)
 
-_LISTS: dict[tuple[str, tuple[int, ...], bytes], list[Any]] = {}
-
 MAX_SHAPES = 16
 """PyBullet silently leaves out what a compound has beyond (MAX_COMPOUND_COLLISION_SHAPES)."""
 
-_HULL_LOCK = threading.Lock()
-_HULL_FOLDERS: dict[tuple[int, str], Path] = {}
-"""Folders of hulls by process, so that a forked process takes its own."""
+_LOCK = threading.Lock()
+
+
+@contextmanager
+def hulls_forgotten(client: BulletClient) -> Iterator[None]:
+    """Make bodies of shapes of `build_collision` within this.
+
+    PyBullet keeps what it has read of files, by their names: it reads those of a body's hulls when
+    it makes the shape, and again for the body, when they are gone. Afterwards it must forget them,
+    or it would keep all hulls of the process.
+    """
+    with _LOCK:  # what it keeps is one for all threads
+        yield
+        for kept in (0, 1):
+            client.setPhysicsEngineParameter(enableFileCaching=kept)
 
 
 def build_collision(
@@ -55,7 +63,7 @@ def build_collision(
     centre_of_mass_m: Vector3,
     name: str,
 ) -> int:
-    """Make one PyBullet collision shape.
+    """Make one PyBullet collision shape, within `hulls_forgotten`.
 
     Parameters
     ----------
@@ -86,13 +94,14 @@ def build_collision(
         part["collisionFramePosition"] = part.pop("position")
         part["collisionFrameOrientation"] = part.pop("orientation", _UNTURNED)
         part["shapeType"] = part.pop("type")
-        for key in part.keys() & {"vertices", "indices"}:
-            part[key] = _lists(part[key])
-        return int(client.createCollisionShape(**part))
+        read = {key: part.pop(key).tolist() for key in ("vertices", "indices") if key in part}
+        # PyBullet takes references to the lists that it reads, and never gives them back.
+        with references_given_back(list(read.values())):
+            return int(client.createCollisionShape(**part, **read))
     if len(parts) > MAX_SHAPES:
         parts = _joined(client, parts, name)
     has_hulls = any("vertices" in part for part in parts)
-    with _hull_folder() if has_hulls else nullcontext(Path()) as folder:
+    with temporary_folder("sailenv-hulls-") if has_hulls else nullcontext(Path()) as folder:
         files = [_hull_file(folder, part, name) for part in parts]
         return int(client.createCollisionShapeArray(**_as_arrays(parts), fileNames=files))
 
@@ -169,35 +178,6 @@ def _triangles(constants: Any, shape: TriangleShape, scale: Vector3) -> dict[str
         "flags": constants.GEOM_FORCE_CONCAVE_TRIMESH,
         "position": [0.0, 0.0, 0.0],
     }
-
-
-def _lists(values: NDArray[Any]) -> list[Any]:
-    """Return an array as lists; the same lists for the same values.
-
-    PyBullet never gives back its references to what it reads, so lists that are made again for each
-    scene would stay forever.
-    """
-    data = hashlib.sha256(np.ascontiguousarray(values).tobytes()).digest()
-    key = values.dtype.str, values.shape, data
-    if key not in _LISTS:
-        _LISTS[key] = values.tolist()
-    return _LISTS[key]
-
-
-@contextmanager
-def _hull_folder() -> Iterator[Path]:
-    """Yield an empty folder that is gone afterwards; always the same one in a process.
-
-    PyBullet keeps every mesh that it has read by the name of its file, until the process ends: a
-    hull that comes again must have the name that it had before.
-    """
-    key = os.getpid(), tempfile.gettempdir()
-    with (
-        _HULL_LOCK,
-        temporary_folder("sailenv-hulls-", again=_HULL_FOLDERS.get(key)) as folder,
-    ):
-        _HULL_FOLDERS[key] = folder
-        yield folder
 
 
 def _hull_file(folder: Path, part: dict[str, Any], name: str) -> str:

@@ -22,7 +22,7 @@ LIMIT_FORCE = 1e7
 
 
 def build_tree(client: BulletClient, links: Sequence[JointLink], world_from_rest: Pose) -> int:
-    """Put links into the engine as one body; return its number there.
+    """Put links into the engine as one body, within `hulls_forgotten`; return its number there.
 
     Parameters
     ----------

@@ -29,9 +29,6 @@ __all__ = ["EndlessJob", "make_endless"]
 
 MOST_WORKERS = 256
 
-LARGEST_KEPT_BYTES = 2**20
-"""Of a worker's memory: more than what a frame of 256×256 is made of, less than a texture [B]."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndlessJob:
@@ -166,7 +163,7 @@ class _PartMaker:
 
 def _maker(job: EndlessJob, output: str, on_frame: Callable[[], None]) -> Callable[[int], int]:
     """Return what makes parts in a worker, whose end frees all."""
-    keep_freed_memory(LARGEST_KEPT_BYTES)
+    keep_freed_memory(many_scenes=True)
     return _PartMaker(job, StreamFolder(Path(output), job.identity), on_frame).make
 
 

@@ -64,14 +64,3 @@ def test_what_others_made_stays(place: Path) -> None:
     with temporary_folder(PREFIX):
         pass
     assert sorted(place.rglob("*")) == before
-
-
-def test_a_name_comes_again_while_it_is_free(place: Path) -> None:
-    """What somebody else put there is not used."""
-    with temporary_folder(PREFIX) as first:
-        pass
-    with temporary_folder(PREFIX, again=first) as second:
-        assert second == first
-    first.write_text("a")
-    with temporary_folder(PREFIX, again=first) as third:
-        assert third != first

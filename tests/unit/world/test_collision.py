@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import fcntl
+import ctypes
 import gc
 import math
-import os
 import tracemalloc
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,7 @@ from sailenv_ros.types.model import (
     TriangleShape,
 )
 from sailenv_ros.world.bullet import BulletClient
-from sailenv_ros.world.collision import build_collision
+from sailenv_ros.world.collision import build_collision, hulls_forgotten
 
 SLAB = BoxShape(half_extents_m=(2.0, 2.0, 0.1), centre_m=(0.0, 0.0, -0.1))
 PYRAMID = ConvexShape(
@@ -39,10 +38,11 @@ def _hits(
     """Heights at which rays straight down meet a body of the shapes; NaN for none."""
     client = BulletClient()
     try:
-        shape = build_collision(
-            client, shapes, scale=scale, centre_of_mass_m=(0.0, 0.0, 0.0), name="body"
-        )
-        client.createMultiBody(baseMass=0.0, baseCollisionShapeIndex=shape)
+        with hulls_forgotten(client):
+            shape = build_collision(
+                client, shapes, scale=scale, centre_of_mass_m=(0.0, 0.0, 0.0), name="body"
+            )
+            client.createMultiBody(baseMass=0.0, baseCollisionShapeIndex=shape)
         found = [client.rayTest((x, y, 9.0), (x, y, -9.0))[0] for x, y in rays]
         return [hit[3][2] if hit[0] >= 0 else math.nan for hit in found]
     finally:
@@ -126,21 +126,48 @@ def test_hollow_geometry_stands_alone() -> None:
         _hits([SLAB, hollow], [])
 
 
-def test_shapes_that_come_again_keep_no_more_memory() -> None:
-    """PyBullet keeps what it has read: lists of vertices, and files by their names."""
-    hollow = TriangleShape(
-        positions=np.random.default_rng(1).normal(size=(300, 3)),
-        triangles=np.arange(300, dtype=np.int32).reshape(-1, 3),
-    )
+def test_shapes_that_do_not_come_again_keep_no_memory() -> None:
+    """PyBullet takes references to the lists that it reads, and forgets to give them back."""
+    dice = np.random.default_rng(1)
+    triangles = np.arange(300, dtype=np.int32).reshape(-1, 3)
+    hollows = [
+        TriangleShape(positions=dice.normal(size=(300, 3)), triangles=triangles) for _ in range(21)
+    ]
     # One set of lists alone is 50 kB.
-    assert _grown([[hollow]] * 21) < 25_000
+    assert _grown([[hollow] for hollow in hollows]) < 25_000
+    hulls = [ConvexShape(points=dice.normal(size=(100, 3))) for _ in range(21)]
+    assert _grown([[hull] for hull in hulls]) < 25_000
 
 
 def test_hulls_of_compounds_that_do_not_come_again_keep_no_memory() -> None:
-    """PyBullet reads them from files; the lists of each are 25 kB."""
+    """Of files, PyBullet would keep each that it ever read: 13 kB a hull."""
     dice = np.random.default_rng(2)
-    hulls = [ConvexShape(points=dice.normal(size=(100, 3))) for _ in range(21)]
-    assert _grown([[SLAB, hull] for hull in hulls]) < 25_000
+    hulls = [ConvexShape(points=dice.normal(size=(100, 3))) for _ in range(201)]
+    _hits([SLAB, hulls[0]], [])
+    before = _allocated()
+    for hull in hulls[1:]:
+        _hits([SLAB, hull], [])
+    gc.collect()
+    assert _allocated() - before < 400_000
+
+
+class _Allocated(ctypes.Structure):
+    """Of glibc's `mallinfo2`; the eighth number is what is in use [B]."""
+
+    _fields_ = [(f"number_{place}", ctypes.c_size_t) for place in range(10)]
+
+
+def test_bodies_of_hulls_are_made_without_a_word(capfd: pytest.CaptureFixture[str]) -> None:
+    """PyBullet says it on standard error if it looks for a hull's file that is gone."""
+    _hits([SLAB, PYRAMID], [])
+    assert capfd.readouterr() == ("", "")
+
+
+def _allocated() -> int:
+    """Return what the C library has allocated on the heap of the main thread [B]."""
+    libc = ctypes.CDLL(None)
+    libc.mallinfo2.restype = _Allocated
+    return int(libc.mallinfo2().number_7)
 
 
 def _grown(bodies: list[list[CollisionShape]]) -> int:
@@ -177,27 +204,8 @@ def _files(client: BulletClient, monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     return [Path(name) for name in given]
 
 
-def test_a_hulls_file_has_the_same_name_again_and_is_removed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_hulls_file_is_removed(monkeypatch: pytest.MonkeyPatch) -> None:
     client = BulletClient()
-    (first,), (second,) = (_files(client, monkeypatch) for _ in range(2))
+    (file,) = _files(client, monkeypatch)
     client.close()
-    assert first == second
-    assert not first.parent.exists()
-
-
-def test_a_folder_that_another_has_made_is_not_used(monkeypatch: pytest.MonkeyPatch) -> None:
-    client = BulletClient()
-    (first,) = _files(client, monkeypatch)
-    first.parent.mkdir()
-    lock = os.open(first.parent, os.O_RDONLY)
-    fcntl.flock(lock, fcntl.LOCK_EX)  # as its maker does; one that nobody holds is abandoned
-    try:
-        (second,) = _files(client, monkeypatch)
-        assert second.parent != first.parent
-        assert first.parent.is_dir()
-    finally:
-        os.close(lock)
-        first.parent.rmdir()
-        client.close()
+    assert not file.parent.exists()
