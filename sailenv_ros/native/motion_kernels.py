@@ -96,10 +96,10 @@ class RowMotions(NamedTuple):
 
     Attributes
     ----------
-    own_from_rows : (R, H, 3, 4) float64
-        Axes of the group's own from the optical frame of each row of the one picture.
-    rows_from_own : (R, H', 3, 4) float64
-        The optical frame of each row of the other picture from the group's axes.
+    own_from_rows : (R, H, 4, 4) float64
+        Axes of the group's own from the optical frame of each row of the one picture, transposed.
+    rows_from_own : (R, H', 4, 4) float64
+        The optical frame of each row of the other picture from the group's axes, transposed.
     at_rest : (R,) bool
         Groups that do not move at all, as the camera.
     """
@@ -236,8 +236,8 @@ def move_points(
         checked(name, array, dtype, (*depth.shape, *channels))
     if by_rows is not None:
         groups = len(motions)
-        checked("own_from_rows", by_rows.own_from_rows, np.float64, (groups, len(depth), 3, 4))
-        checked("rows_from_own", by_rows.rows_from_own, np.float64, (groups, None, 3, 4))
+        checked("own_from_rows", by_rows.own_from_rows, np.float64, (groups, len(depth), 4, 4))
+        checked("rows_from_own", by_rows.rows_from_own, np.float64, (groups, None, 4, 4))
         checked("at_rest", by_rows.at_rest, np.bool_, (groups,))
     if surfaces is not None:
         count = len(motions)

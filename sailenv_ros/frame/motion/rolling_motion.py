@@ -53,15 +53,15 @@ def rolling_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     seen, stands = _world_from_camera(begin), _world_from_camera(end)
     sees = invert(stands)
     groups = _FIRST + len(moving)
-    own_from_rows = np.zeros((groups, len(seen), 3, 4))
-    rows_from_own = np.zeros((groups, len(sees), 3, 4))
-    own_from_rows[[_SKY, _STILL]] = seen[:, :3]
-    rows_from_own[[_SKY, _STILL]] = sees[:, :3]
+    own_from_rows = np.zeros((groups, len(seen), 4, 4))
+    rows_from_own = np.zeros((groups, len(sees), 4, 4))
+    own_from_rows[[_SKY, _STILL]] = np.swapaxes(seen, 1, 2)
+    rows_from_own[[_SKY, _STILL]] = np.swapaxes(sees, 1, 2)
     for group, row in enumerate(moving.tolist(), start=_FIRST):
         then = _world_from_instance(begin, int(ids[row]), first[row])
         now = _world_from_instance(end, int(ids[row]), last[row])
-        own_from_rows[group] = (invert(then) @ seen)[:, :3]
-        rows_from_own[group] = (sees @ now)[:, :3]
+        own_from_rows[group] = np.swapaxes(invert(then) @ seen, 1, 2)
+        rows_from_own[group] = np.swapaxes(sees @ now, 1, 2)
     is_still = bool((seen == seen[0]).all() and (stands == stands[0]).all())
     is_still &= np.array_equal(begin.camera.world_from_camera, end.camera.world_from_camera)
     at_rest = np.zeros(groups, np.bool_)

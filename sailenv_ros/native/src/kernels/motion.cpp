@@ -37,9 +37,9 @@
     FIELD(const uint16_t*, to_instance) /* (H', W'), or null: depth alone decides */         \
     FIELD(double, tolerance)            /* share of its depth a hidden point is behind */    \
     FIELD(double, duration)             /* what displacements in the picture are over */     \
-    FIELD(const double*, own_from_rows) /* (R, H, 3, 4): other axes from each row's, */      \
-                                        /* instead of `motions`; else null */                \
-    FIELD(const double*, rows_from_own) /* (R, row_poses, 3, 4), of the other picture */     \
+    FIELD(const double*, own_from_rows) /* (R, H, 4, 4), by columns: other axes from each */ \
+                                        /* row's, instead of `motions`; else null */         \
+    FIELD(const double*, rows_from_own) /* (R, row_poses, 4, 4), of the other picture */     \
     FIELD(const uint8_t*, at_rest)      /* (R,): 1 where nothing moves */                    \
     FIELD(int64_t, row_poses)                                                                \
     FIELD(const float*, offsets)     /* (H, W, 3), own axes: how a point that deforms has */ \
@@ -77,6 +77,7 @@ constexpr double INFINITE = std::numeric_limits<double>::infinity();
 constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
 constexpr int64_t CHUNK = 256;  // pixels whose intermediate results stay in the first-level cache
 constexpr int64_t TILE_ROWS = 16;
+constexpr int64_t ROLLING_ROWS = 4;  // of which pixels' points are found side by side
 constexpr double ROUNDING_PX = 1e-3;
 constexpr double SAME_ROW = 1e-4;    // rows between two guesses that end the search: a place
                                      // moves by a hundredth of that, or less
@@ -493,75 +494,122 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
     look_up(in, places, v, u, count);
 }
 
-// Where a point of other axes is in the row of the other picture that sees it, and in the frame of
-// that row's camera; false if no row does. The search begins at `row`. A row's pose is between
-// those of its neighbours; points beside the picture are where its first or last row has them.
-template <class Project>
-bool find_row(const Motion& in, int64_t group, const double* own, double shift, double& row,
-              const Project& project, double* point, double* place) {
-    const double* poses = in.rows_from_own + 12 * group * in.row_poses;
-    const double last = static_cast<double>(in.row_poses - 1);
-    for (int32_t k = 0; k < MOST_ROUNDS; k++) {
-        const double within = row < 0.0 ? 0.0 : row < last ? row : last;
-        const int64_t upper = static_cast<int64_t>(within);
-        const int64_t lower = upper + 1 < in.row_poses ? upper + 1 : upper;
-        const double share = within - static_cast<double>(upper);
-        double above[3], below[3];
-        transformed(poses + 12 * upper, own, shift, above);
-        transformed(poses + 12 * lower, own, shift, below);
-        for (int axis = 0; axis < 3; axis++) {
-            point[axis] = above[axis] + share * (below[axis] - above[axis]);
-        }
-        if (!project(point, shift, place)) return false;
-        const double found = sailenv::pixel_v(*in.to_lens, place[1]);
-        const double step = found - row;
-        row = found;
-        if (step < SAME_ROW && step > -SAME_ROW) return true;
-    }
-    return false;
+// The search for the row of the other picture that sees a point: `own` in other axes, `point` in
+// the frame of the camera at row `at`.
+struct RowSearch {
+    double own[3], shift;
+    const double* poses;  // of all rows
+    double at, found;     // a row, and that in which its camera has the point
+    double point[4], place[2];
+    bool seen, ended;
+};
+
+// A point or direction in other axes, of which a matrix holds the columns.
+LANES_INLINE d4 carried(const double* columns, const double* point, double shift) {
+    const auto column = [columns](int k) {
+        d4 numbers;
+        memcpy(&numbers, columns + 4 * k, sizeof numbers);
+        return numbers;
+    };
+    return column(0) * point[0] + column(1) * point[1] + column(2) * point[2] + shift * column(3);
 }
 
-// The same as `move_bent_chunk` where rows have poses of their own.
+// Looks from row `at`, and goes on to the row found unless it is the same: what has ended finds the
+// same again. A row's pose is between those of its neighbours; points beside the picture are where
+// its first or last row has them.
 template <class Project>
-void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int64_t count,
-                        const Project& project) {
-    const int64_t at = v * in.width + u;
+LANES_INLINE void look_from_row(const Motion& in, const Project& project, RowSearch& search) {
+    const double last = static_cast<double>(in.row_poses - 1);
+    const double within = search.at < 0.0 ? 0.0 : search.at < last ? search.at : last;
+    const int64_t upper = static_cast<int64_t>(within);
+    const int64_t lower = upper + 1 < in.row_poses ? upper + 1 : upper;
+    const double share = within - static_cast<double>(upper);
+    const d4 above = carried(search.poses + 16 * upper, search.own, search.shift);
+    const d4 below = carried(search.poses + 16 * lower, search.own, search.shift);
+    const d4 point = above + share * (below - above);
+    memcpy(search.point, &point, sizeof point);
+    search.seen = project(search.point, search.shift, search.place);
+    search.found = sailenv::pixel_v(*in.to_lens, search.place[1]);
+    const double step = search.found - search.at;
+    const bool lost = !search.seen;
+    search.ended = lost | ((step < SAME_ROW) & (step > -SAME_ROW));
+    search.at = search.ended ? search.at : search.found;
+}
+
+// The same as `move_bent_chunk` where rows have poses of their own, for some rows at once. The
+// search for a pixel's row begins where that for its neighbour ended.
+template <class Project>
+void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t first_v, int64_t rows, int64_t u,
+                        int64_t count, const Project& project) {
     const sailenv::Lens& to = *in.to_lens;
     const double rate = 1.0 / in.duration;
     const Pixels pixels{*in.from_lens, in.from_rays, in.from_parallel != 0};
-    Places places;
-    double row = static_cast<double>(v);  // of the neighbour, where the search begins
+    Places all_places[ROLLING_ROWS];
+    RowSearch searches[ROLLING_ROWS] = {};
+    for (int64_t j = 0; j < ROLLING_ROWS; j++) searches[j].found = static_cast<double>(first_v + j);
     for (int64_t k = 0; k < count; k++) {
-        const uint16_t asked = in.row_of_instance[in.instance[at + k]];
-        const int64_t group = asked < in.rows ? asked : 0;
-        const double z = in.depth[at + k];
-        const double shift = z == INFINITE ? 0.0 : 1.0;
-        double seen[3], own[3], point[3], place[2] = {0.0, 0.0};
-        point_of(pixels, at + k, u + k, v, z, seen);
-        const bool deforms = in.offsets != nullptr && in.deforming[group] != 0;
-        const float* offset = deforms ? in.offsets + 3 * (at + k) : nullptr;
-        const bool known = group != 0 && seen[2] == seen[2] && (!deforms || offset[0] == offset[0]);
-        for (int axis = 0; axis < 3; axis++) point[axis] = seen[axis];
-        const bool rests = in.at_rest[group] != 0;
-        transformed(in.own_from_rows + 12 * (group * in.height + v), seen, shift, own);
-        for (int axis = 0; deforms && axis < 3; axis++) own[axis] += offset[axis];
-        const bool found =
-            known && !rests && find_row(in, group, own, shift, row, project, point, place);
-        if (!found) row = static_cast<double>(v);
-        const bool valid = found || (known && rests);
-        const bool moved = valid && !rests;
-        places.known[k] = known;
-        places.valid[k] = valid;
-        places.u[k] = moved ? sailenv::pixel_u(to, place[0]) - static_cast<double>(u + k) : 0.0;
-        places.v[k] = moved ? sailenv::pixel_v(to, place[1]) - static_cast<double>(v) : 0.0;
-        places.z_to[k] = shift == 0.0 ? INFINITE : project.reach(point);
-        if (in.valid != nullptr) in.valid[at + k] = valid;
-        if (!wanted.flow) continue;
-        float* flow = in.flow + 2 * (at + k);
-        flow[0] = valid ? static_cast<float>(rate * places.u[k]) : NOT_A_NUMBER;
-        flow[1] = valid ? static_cast<float>(rate * places.v[k]) : NOT_A_NUMBER;
+        bool known[ROLLING_ROWS] = {}, rests[ROLLING_ROWS] = {};
+        bool any = false;
+        for (int64_t j = 0; j < ROLLING_ROWS; j++) {
+            // Beyond the rows the last one is searched for again.
+            const int64_t v = first_v + std::min(j, rows - 1), at = v * in.width + u + k;
+            RowSearch& search = searches[j];
+            const uint16_t asked = in.row_of_instance[in.instance[at]];
+            const int64_t group = asked < in.rows ? asked : 0;
+            const double z = in.depth[at];
+            search.shift = z == INFINITE ? 0.0 : 1.0;
+            double point[3];
+            point_of(pixels, at, u + k, v, z, point);
+            const bool deforms = in.offsets != nullptr && in.deforming[group] != 0;
+            const float* offset = deforms ? in.offsets + 3 * at : nullptr;
+            known[j] = group != 0 && point[2] == point[2] && (!deforms || offset[0] == offset[0]);
+            rests[j] = in.at_rest[group] != 0;
+            const d4 own =
+                carried(in.own_from_rows + 16 * (group * in.height + v), point, search.shift);
+            for (int axis = 0; axis < 3; axis++) {
+                search.own[axis] = deforms ? own[axis] + offset[axis] : own[axis];
+                search.point[axis] = point[axis];
+            }
+            search.poses = in.rows_from_own + 16 * group * in.row_poses;
+            search.at = search.found;
+            search.ended = search.seen = false;
+            search.place[0] = search.place[1] = 0.0;
+            any |= known[j] && !rests[j];
+        }
+        bool goes_on = any;
+        for (int32_t round = 0; goes_on && round < MOST_ROUNDS; round++) {
+            goes_on = false;
+            for (int64_t j = 0; j < ROLLING_ROWS; j++) {
+                look_from_row(in, project, searches[j]);
+                const bool goes = known[j] && !rests[j] && !searches[j].ended;
+                goes_on |= goes;
+            }
+        }
+        for (int64_t j = 0; j < ROLLING_ROWS; j++) {
+            if (j == rows) break;
+            RowSearch& search = searches[j];
+            Places& places = all_places[j];
+            const int64_t v = first_v + j, at = v * in.width + u + k;
+            const bool found = known[j] && !rests[j] && search.seen && search.ended;
+            if (!found) search.found = static_cast<double>(v);
+            const bool valid = found || (known[j] && rests[j]);
+            const double right = sailenv::pixel_u(to, search.place[0]) - static_cast<double>(u + k);
+            const double down = sailenv::pixel_v(to, search.place[1]) - static_cast<double>(v);
+            places.known[k] = known[j];
+            places.valid[k] = valid;
+            places.u[k] = found ? right : 0.0;
+            places.v[k] = found ? down : 0.0;
+            places.z_to[k] = search.shift == 0.0 ? INFINITE : project.reach(search.point);
+            if (in.valid != nullptr) in.valid[at] = valid;
+            if (!wanted.flow) continue;
+            float* flow = in.flow + 2 * at;
+            flow[0] = valid ? static_cast<float>(rate * places.u[k]) : NOT_A_NUMBER;
+            flow[1] = valid ? static_cast<float>(rate * places.v[k]) : NOT_A_NUMBER;
+        }
     }
-    if (wanted.place) look_up(in, places, v, u, count);
+    for (int64_t j = 0; wanted.place && j < rows; j++) {
+        look_up(in, all_places[j], first_v + j, u, count);
+    }
 }
 
 // Where a pin-hole has points. `reach` is what its picture tells of their distance, as those of the
@@ -602,11 +650,13 @@ int32_t move_through_bent_lenses(int64_t threads, const Motion& in, Wanted wante
     const auto move = [&](const auto& project) {
         sailenv::parallel_for(
             threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
-                for (int64_t v = begin; v < end; v++) {
+                const bool rolls = in.own_from_rows != nullptr;
+                for (int64_t v = begin; v < end; v += rolls ? ROLLING_ROWS : 1) {
                     for (int64_t u = 0; u < in.width; u += CHUNK) {
                         const int64_t count = u + CHUNK < in.width ? CHUNK : in.width - u;
-                        if (in.own_from_rows != nullptr) {
-                            move_rolling_chunk(in, wanted, v, u, count, project);
+                        if (rolls) {
+                            move_rolling_chunk(in, wanted, v, std::min(ROLLING_ROWS, end - v), u,
+                                               count, project);
                         } else {
                             move_bent_chunk(in, wanted, v, u, count, project);
                         }
