@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "../threads.h"
 #include "cluster_culling.h"
@@ -420,6 +421,17 @@ void sort_into_bands(Segment& segment, const Triangle* triangles, bool fine, int
     starts[low] = 0;
 }
 
+// The same where all reach into the one band that is drawn.
+void put_into_band(Segment& segment, int32_t band) {
+    const size_t at = static_cast<size_t>(band);
+    if (segment.starts.size() < at + 2) segment.starts.resize(at + 2);
+    segment.starts[at] = 0;
+    segment.starts[at + 1] = static_cast<uint32_t>(segment.triangle_count);
+    segment.entries.resize(static_cast<size_t>(segment.triangle_count));
+    std::iota(segment.entries.begin(), segment.entries.end(),
+              static_cast<uint32_t>(segment.first_triangle));
+}
+
 // Where a row of a wide triangle begins and ends, give or take a sample.
 template <bool FINE>
 LANES_INLINE bool narrow(float slope, float offset, float inverse, float& low, float& high) {
@@ -548,12 +560,12 @@ void set_frames(Scratch& scratch, const Instances& instances, const double* eye_
                          *scale = instances.scales + 3 * k;
             compose(onto, pose, scale, frame.eye_from_object);
             const bool is_clipped = k + 1 == instances.clipped;
-            if (face == nullptr) {
-                set_sides(frame, is_clipped ? clipped(projection, instances) : projection, nullptr);
-            } else {
+            if (face != nullptr) {
                 set_sides(frame, projection, is_clipped ? &clipped_bounds : &bounds);
+            } else if (!projection.listed) {
+                set_sides(frame, is_clipped ? clipped(projection, instances) : projection, nullptr);
             }
-            set_eye(frame, projection);
+            if (!projection.listed) set_eye(frame, projection);
             // Normals go by the inverse transpose: the rotation with the reciprocal scale.
             for (int j = 0; j < 3; j++) {
                 for (int i = 0; i < 8; i++) {
@@ -596,7 +608,8 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
             if (part.instance + 1 == instances.clipped && nowhere) continue;
             const InstanceFrame& frame = frames[part.instance];
             const double centre[3] = {part.sphere[0], part.sphere[1], part.sphere[2]};
-            if (is_beyond(centre, part.sphere[3], frame.sides)) continue;
+            const bool culled = !projection.listed;
+            if (culled && is_beyond(centre, part.sphere[3], frame.sides)) continue;
             const bool two_sided =
                 projection.drawn == Drawn::SHADOW || (part.flags & PART_DOUBLE_SIDED);
             const int passes = back_first && two_sided ? 2 : 1;
@@ -606,8 +619,8 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
                                                   : FACING_FRONT;
                 for (int32_t c = 0; c < part.cluster_count; c++) {
                     const Cluster& cluster = part.clusters[c];
-                    if (is_beyond(cluster.centre, cluster.radius, frame.sides)) continue;
-                    if (!two_sided && faces_away(cluster, frame.eye)) continue;
+                    if (culled && is_beyond(cluster.centre, cluster.radius, frame.sides)) continue;
+                    if (culled && !two_sided && faces_away(cluster, frame.eye)) continue;
                     set.seen.push_back({number, c, facing, face});
                     most_triangles += cluster.index_count / 3;
                     if (static_cast<int64_t>(set.seen.size()) - first_cluster == SEGMENT_CLUSTERS) {
@@ -662,6 +675,8 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
     drawn.y0 = static_cast<int16_t>(projection.y0);
     drawn.y1 = static_cast<int16_t>(projection.y1);
     const RowRange reached = bands_of(drawn, projection.fine, bands, band_rows);
+    const int32_t low = std::max(reached.first, 0), high = std::min(reached.last, bands - 1);
+    const int32_t only = projection.y0 / (projection.fine ? 2 * band_rows : band_rows);
     parallel_for(threads, set.segment_count, 1, [&](int64_t first, int64_t, int64_t) {
         Segment& segment = set.segments[static_cast<size_t>(first)];
         ClusterRows rows;
@@ -682,8 +697,12 @@ void make_triangles(int64_t threads, const Scratch& scratch, const DrawList& par
             if (projection.fine) std::fill_n(set.part_of.begin() + number, made, seen.part);
             segment.triangle_count += made;
         }
-        sort_into_bands(segment, set.triangles.data(), projection.fine, bands, band_rows,
-                        std::max(reached.first, 0), std::min(reached.last, bands - 1));
+        if (projection.listed) {
+            put_into_band(segment, only);
+        } else {
+            sort_into_bands(segment, set.triangles.data(), projection.fine, bands, band_rows, low,
+                            high);
+        }
     });
 }
 

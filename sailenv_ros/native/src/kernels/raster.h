@@ -64,6 +64,7 @@ struct Projection {
     // Samples are the centres of pixels. Fine ones are half a pixel apart: sample k lies at pixel
     // (k - 1) / 2, so there are 2 n + 1 to n pixels, and those of odd numbers are centres.
     bool fine;
+    bool listed;                // parts hold what may be seen alone, and one band is drawn
     float least_inverse_depth;  // what is not nearer is not drawn
     float greatest_inverse_depth;
 };

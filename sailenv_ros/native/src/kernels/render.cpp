@@ -120,6 +120,7 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
     Projection projection = projection_of(view);
     projection.y0 = rows.first;
     projection.y1 = rows.end - 1;
+    projection.listed = rows.listed;
     const bool shaded = outputs.radiance != nullptr;
     const bool smoothed = shaded && view.smooth_edges != 0;
     Projection sampled = projection;
@@ -214,7 +215,7 @@ SAILENV_KERNEL(draw_picture)
     try {
         const int32_t height = static_cast<int32_t>(view->height);
         draw_rows(threads, **scratch, *view, *instances, *parts, *glass, light, *outputs,
-                  {0, height, band_rows_of(view->height)});
+                  {0, height, band_rows_of(view->height), false});
     } catch (const std::bad_alloc&) {
         return STATUS_OUT_OF_MEMORY;
     }

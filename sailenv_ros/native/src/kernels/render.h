@@ -17,8 +17,10 @@ struct DrawingScratch : Scratch {
 };
 
 // Rows `first` to `end` - 1 of pixels, in bands of `band` from row 0 on; `first` begins a band.
+// `listed` as in `Projection`.
 struct DrawnRows {
     int32_t first, end, band;
+    bool listed;
 };
 
 // Whether the sizes are drawable and what is wanted can be drawn.

@@ -5,6 +5,7 @@
 // then drawn one by one from these, by the same functions as a whole picture.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <new>
 
 #include "../abi.h"
@@ -35,8 +36,9 @@ namespace sailenv {
 namespace {
 
 constexpr int64_t BAND_POSES = 32;
-constexpr int64_t MOST_INDICES = 3 * CLUSTER_TRIANGLES;
 constexpr int64_t STILL = -1;
+constexpr double LOOK_ROWS = 0.55;  // how far from its middle a row is looked at: smooth edges do
+                                    // so half a row away, the rest is for roundings
 constexpr double LEAST_DEPTH_M = 2e-3;  // of corners that have a row; more than the rasteriser's
 
 // How far points move at most within a band: by `turn` times their distance from the eye, plus
@@ -51,11 +53,10 @@ struct BandTriangle {
     int32_t low, high;
 };
 
-// Triangles of a band that lie in one cluster of the scene, and the rows that they may reach.
+// Triangles of a band that lie in one cluster of the scene.
 struct BandCluster {
     const Cluster* cluster;
     int64_t first, end;
-    int32_t low, high;
 };
 
 // A part of the scene as a band sees it: with clusters, triangles and corners of its own.
@@ -64,25 +65,59 @@ struct BandPart {
     int64_t first_cluster, end_cluster, corner_at;
 };
 
+// Corners of a part that clusters which may be seen have, each once.
+struct PartCorners {
+    std::vector<int32_t> number_of;  // of each corner of the part, below; -1
+    std::vector<uint32_t> corner;
+    std::vector<float> x, y, z;
+    std::vector<double> eye_x, eye_y, eye_z;  // as the eye has it at the band's middle
+    std::vector<int32_t> low, high;           // rows that it may be in
+    std::vector<int32_t> kept;                // number among those of the band's triangles; -1
+
+    void begin(const Part& part) {
+        for (const uint32_t before : corner) number_of[before] = -1;
+        const size_t count = static_cast<size_t>(part.corner_count);
+        if (number_of.size() < count) number_of.resize(count, -1);
+        corner.clear();
+    }
+    void resize(size_t count) {
+        for (std::vector<float>* axis : {&x, &y, &z}) axis->resize(count);
+        for (std::vector<double>* axis : {&eye_x, &eye_y, &eye_z}) axis->resize(count);
+        low.resize(count);
+        high.resize(count);
+        kept.resize(count);
+    }
+};
+
 // The parts of a scene that a band may see, and their instances, numbered anew.
 struct BandScene {
     std::vector<BandPart> opaque, glass;
     std::vector<BandCluster> clusters;
     std::vector<BandTriangle> triangles;
-    std::vector<float> x, y, z;      // corners
-    std::vector<int32_t> low, high;  // rows of each
-    std::vector<int32_t> corner_of;  // number of a part's corner in the band; -1
+    std::vector<float> x, y, z;  // corners
+    PartCorners corners;
     std::vector<int32_t> number_of;  // of each instance of the scene; -1
     std::vector<int64_t> moving_of;
     std::vector<double> poses, scales;
     std::vector<uint8_t> at_baked_pose;
 };
 
-// The same as one row sees it, as it is drawn.
+// Some parts as some rows see them, as they are drawn.
 struct RowScene {
     std::vector<Part> opaque, glass;
     std::vector<Cluster> clusters;
+};
+
+// Triangles of a part that one row may see, as numbers in `RowLists`.
+struct RowPart {
+    int64_t part, first, end;
+};
+
+// What each row of a band may see: triangles in their order, row after row.
+struct RowLists {
     std::vector<uint32_t> corners, vertices;
+    std::vector<int64_t> ends;  // of each row
+    std::vector<std::vector<RowPart>> opaque, glass;
 };
 
 // The product of rigid transforms, rows of four.
@@ -195,33 +230,67 @@ struct Band {
     }
 };
 
-// Finds the rows that a corner may be in; all of them through a lens that bends lines.
-void set_rows(const Band& band, int64_t instance, const float* corner, int32_t& low,
-              int32_t& high) {
+// Finds where the eye has corners, from number `first` on, and the rows that they may be in; all
+// rows through a lens that bends lines.
+void set_rows(const Band& band, int64_t instance, int64_t first, PartCorners& corners) {
     constexpr int32_t EVERY = 1 << 20;
-    low = -EVERY;
-    high = EVERY;
-    if (band.in.view->table != nullptr) return;
-    const double* m = band.frame(0, instance).eye_from_object;
-    double at[3];
-    for (int i = 0; i < 3; i++) {
-        at[i] = m[4 * i] * corner[0] + m[4 * i + 1] * corner[1] + m[4 * i + 2] * corner[2] +
-                m[4 * i + 3];
+    const int64_t count = static_cast<int64_t>(corners.corner.size());
+    int32_t *lows = corners.low.data(), *highs = corners.high.data();
+    if (band.in.view->table != nullptr) {
+        std::fill(lows + first, lows + count, -EVERY);
+        std::fill(highs + first, highs + count, EVERY);
+        return;
     }
-    const double distance = std::sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
-    const double reach = band.reach(instance, distance);
+    const double* m = band.frame(0, instance).eye_from_object;
+    const Bound bound = band.motion.of(band.moving_of[static_cast<size_t>(instance)]);
     const bool parallel = band.in.view->parallel != 0;
-    const double nearest = parallel ? 1.0 : at[2] - reach;
-    if (!(nearest > LEAST_DEPTH_M)) return;
-    const Lens& lens = band.in.view->lens;
-    const double slope = parallel ? at[1] : at[1] / at[2];
-    const double row = slope * lens.fy + lens.cy;
-    // Besides, smooth edges look half a row away.
-    const double spread = parallel ? 1.0 : 1.0 + std::abs(slope);
-    const double margin = lens.fy * reach * spread / nearest + 1.0;
-    if (!(row - margin > -EVERY && row + margin < EVERY)) return;
-    low = static_cast<int32_t>(std::floor(row - margin));
-    high = static_cast<int32_t>(std::ceil(row + margin));
+    const double fy = band.in.view->lens.fy, cy = band.in.view->lens.cy;
+    const float *xs = corners.x.data(), *ys = corners.y.data(), *zs = corners.z.data();
+    double *eye_x = corners.eye_x.data(), *eye_y = corners.eye_y.data(),
+           *eye_z = corners.eye_z.data();
+    for (int64_t k = first; k < count; k++) {
+        const double a = xs[k], b = ys[k], c = zs[k];
+        const double x = m[0] * a + m[1] * b + m[2] * c + m[3];
+        const double y = m[4] * a + m[5] * b + m[6] * c + m[7];
+        const double z = m[8] * a + m[9] * b + m[10] * c + m[11];
+        eye_x[k] = x;
+        eye_y[k] = y;
+        eye_z[k] = z;
+        const double reach = bound.turn * std::sqrt(x * x + y * y + z * z) + bound.shift;
+        const double nearest = parallel ? 1.0 : z - reach;
+        const double slope = parallel ? y : y / z;
+        const double spread = parallel ? 1.0 : 1.0 + std::abs(slope);
+        const double row = slope * fy + cy, margin = fy * reach * spread / nearest + LOOK_ROWS;
+        const bool known =
+            (nearest > LEAST_DEPTH_M) & (row - margin > -EVERY) & (row + margin < EVERY);
+        lows[k] = static_cast<int32_t>(known ? std::ceil(row - margin) : -EVERY);
+        highs[k] = static_cast<int32_t>(known ? std::floor(row + margin) : EVERY);
+    }
+}
+
+// Whether a triangle shows its back in all rows, however its corners are rounded there.
+bool shows_back(const PartCorners& corners, const int32_t* numbers, double shift) {
+    constexpr double ROUNDING = 1e-6;
+    double p[3][3];
+    for (int j = 0; j < 3; j++) {
+        const size_t k = static_cast<size_t>(numbers[j]);
+        p[j][0] = corners.eye_x[k];
+        p[j][1] = corners.eye_y[k];
+        p[j][2] = corners.eye_z[k];
+    }
+    double normal[3] = {}, det = 0.0, across = 0.0, distance = 0.0;
+    for (int j = 0; j < 3; j++) {
+        const double *a = p[j], *b = p[(j + 1) % 3], *c = p[(j + 2) % 3];
+        const double e[3] = {b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2],
+                             b[0] * c[1] - b[1] * c[0]};
+        if (j == 0) det = a[0] * e[0] + a[1] * e[1] + a[2] * e[2];
+        for (int i = 0; i < 3; i++) normal[i] += e[i];
+        across += std::abs(e[0]) + std::abs(e[1]) + std::abs(e[2]);
+        distance += std::abs(a[0]) + std::abs(a[1]) + std::abs(a[2]);
+    }
+    // To the triangle the eye moves by `shift` at most.
+    const double size = std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2]);
+    return det > shift * size + ROUNDING * distance * across;
 }
 
 int32_t number_of(const Band& band, int64_t instance) {
@@ -240,42 +309,57 @@ int32_t number_of(const Band& band, int64_t instance) {
 }
 
 // Keeps what the band's rows may see of a cluster.
-void keep_triangles(const Band& band, const Part& part, const Cluster& cluster, int64_t corner_at,
-                    int32_t first_row, int32_t end_row) {
+void keep_triangles(const Band& band, const Part& part, const Cluster& cluster, bool one_sided,
+                    int64_t corner_at, int32_t first_row, int32_t end_row) {
     BandScene& scene = band.scene;
+    PartCorners& corners = scene.corners;
+    const uint32_t* indices = part.corner_indices + cluster.first_index;
+    const uint32_t* vertices = part.vertex_indices + cluster.first_index;
+    const int64_t known = static_cast<int64_t>(corners.corner.size());
+    for (int64_t k = 0; k < cluster.index_count; k++) {
+        int32_t& number = corners.number_of[indices[k]];
+        if (number >= 0) continue;
+        number = static_cast<int32_t>(corners.corner.size());
+        corners.corner.push_back(indices[k]);
+    }
+    const size_t count = corners.corner.size();
+    if (corners.x.size() < count) corners.resize(2 * count);
+    for (size_t k = static_cast<size_t>(known); k < count; k++) {
+        corners.x[k] = part.corner_x[corners.corner[k]];
+        corners.y[k] = part.corner_y[corners.corner[k]];
+        corners.z[k] = part.corner_z[corners.corner[k]];
+        corners.kept[k] = -1;
+    }
+    set_rows(band, part.instance, known, corners);
+    const double shift = band.motion.of(band.moving_of[static_cast<size_t>(part.instance)]).shift;
     const int64_t begin = static_cast<int64_t>(scene.triangles.size());
     for (int64_t k = 0; k < cluster.index_count; k += 3) {
+        int32_t numbers[3];
         BandTriangle t{{}, {}, 1 << 30, -(1 << 30)};
         for (int64_t j = 0; j < 3; j++) {
-            const uint32_t corner = part.corner_indices[cluster.first_index + k + j];
-            int32_t& number = scene.corner_of[corner];
-            if (number < 0) {
-                number = static_cast<int32_t>(static_cast<int64_t>(scene.x.size()) - corner_at);
-                const float place[3] = {part.corner_x[corner], part.corner_y[corner],
-                                        part.corner_z[corner]};
-                int32_t low, high;
-                set_rows(band, part.instance, place, low, high);
-                scene.x.push_back(place[0]);
-                scene.y.push_back(place[1]);
-                scene.z.push_back(place[2]);
-                scene.low.push_back(low);
-                scene.high.push_back(high);
-            }
-            t.corner[j] = static_cast<uint32_t>(number);
-            t.vertex[j] = part.vertex_indices[cluster.first_index + k + j];
-            t.low = std::min(t.low, scene.low[static_cast<size_t>(corner_at + number)]);
-            t.high = std::max(t.high, scene.high[static_cast<size_t>(corner_at + number)]);
+            numbers[j] = corners.number_of[indices[k + j]];
+            t.vertex[j] = vertices[k + j];
+            t.low = std::min(t.low, corners.low[static_cast<size_t>(numbers[j])]);
+            t.high = std::max(t.high, corners.high[static_cast<size_t>(numbers[j])]);
         }
-        if (t.low < end_row && t.high >= first_row) scene.triangles.push_back(t);
+        t.low = std::max(t.low, first_row);
+        t.high = std::min(t.high, end_row - 1);
+        if (t.low > t.high || (one_sided && shows_back(corners, numbers, shift))) continue;
+        for (int64_t j = 0; j < 3; j++) {
+            const size_t at = static_cast<size_t>(numbers[j]);
+            if (corners.kept[at] < 0) {
+                corners.kept[at] =
+                    static_cast<int32_t>(static_cast<int64_t>(scene.x.size()) - corner_at);
+                scene.x.push_back(corners.x[at]);
+                scene.y.push_back(corners.y[at]);
+                scene.z.push_back(corners.z[at]);
+            }
+            t.corner[j] = static_cast<uint32_t>(corners.kept[at]);
+        }
+        scene.triangles.push_back(t);
     }
     const int64_t end = static_cast<int64_t>(scene.triangles.size());
-    if (end == begin) return;
-    BandCluster kept{&cluster, begin, end, 1 << 30, -(1 << 30)};
-    for (int64_t k = begin; k < end; k++) {
-        kept.low = std::min(kept.low, scene.triangles[static_cast<size_t>(k)].low);
-        kept.high = std::max(kept.high, scene.triangles[static_cast<size_t>(k)].high);
-    }
-    scene.clusters.push_back(kept);
+    if (end > begin) scene.clusters.push_back({&cluster, begin, end});
 }
 
 void keep_seen(const Band& band, const DrawList& list, int32_t first_row, int32_t end_row,
@@ -293,7 +377,7 @@ void keep_seen(const Band& band, const DrawList& list, int32_t first_row, int32_
         const bool two_sided = (part.flags & PART_DOUBLE_SIDED) != 0;
         const int64_t first_cluster = static_cast<int64_t>(scene.clusters.size());
         const int64_t corner_at = static_cast<int64_t>(scene.x.size());
-        scene.corner_of.assign(static_cast<size_t>(part.corner_count), -1);
+        scene.corners.begin(part);
         for (int32_t c = 0; c < part.cluster_count; c++) {
             const Cluster& cluster = part.clusters[c];
             if (band.is_out(part.instance, cluster.centre, cluster.radius, moves)) continue;
@@ -303,14 +387,13 @@ void keep_seen(const Band& band, const DrawList& list, int32_t first_row, int32_
                 wide.radius += moves;
                 if (faces_away(wide, band.frame(0, part.instance).eye)) continue;
             }
-            keep_triangles(band, part, cluster, corner_at, first_row, end_row);
+            keep_triangles(band, part, cluster, !two_sided && has_eye, corner_at, first_row,
+                           end_row);
         }
         const int64_t end_cluster = static_cast<int64_t>(scene.clusters.size());
         // Corners are read in steps of four, and written in steps of eight.
         const size_t padded = (scene.x.size() + 15) & ~size_t{7};
         for (std::vector<float>* axis : {&scene.x, &scene.y, &scene.z}) axis->resize(padded, 0.0f);
-        scene.low.resize(padded, 0);
-        scene.high.resize(padded, 0);
         if (end_cluster == first_cluster) continue;
         kept.push_back({part, first_cluster, end_cluster, corner_at});
         kept.back().part.instance = number_of(band, part.instance);
@@ -319,66 +402,122 @@ void keep_seen(const Band& band, const DrawList& list, int32_t first_row, int32_
     }
 }
 
-// Lists what some rows may see. Through a lens that leaves lines straight, triangles that may lie
-// in these rows fill clusters of their own, of which nothing is known.
-void list_rows(const BandScene& scene, bool straight, int32_t first_row, int32_t last_row,
-               RowScene& row) {
-    row.clusters.clear();
-    // Room for all; as many as are listed count.
-    row.corners.resize(3 * scene.triangles.size());
-    row.vertices.resize(3 * scene.triangles.size());
-    uint32_t *corners = row.corners.data(), *vertices = row.vertices.data();
-    int64_t listed_indices = 0;
-    Cluster anywhere{};
-    anywhere.radius = 1e30;
+// Lists what each row may see, where a lens leaves lines straight.
+void list_rows(const BandScene& scene, int32_t first_row, int32_t lines, int64_t rows,
+               RowLists& lists) {
+    std::vector<int64_t>& ends = lists.ends;
+    ends.assign(static_cast<size_t>(rows) + 1, 0);
+    // First how many more each row has than the one before.
+    for (const BandTriangle& t : scene.triangles) {
+        ends[static_cast<size_t>((t.low - first_row) / lines)]++;
+        ends[static_cast<size_t>((t.high - first_row) / lines) + 1]--;
+    }
+    int64_t of_row = 0, listed = 0;
+    for (int64_t row = 0; row < rows; row++) {
+        of_row += ends[static_cast<size_t>(row)];
+        ends[static_cast<size_t>(row)] = listed;
+        listed += of_row;
+    }
+    lists.corners.resize(static_cast<size_t>(3 * listed));
+    lists.vertices.resize(static_cast<size_t>(3 * listed));
+    std::vector<int64_t> begun(ends);
     for (const bool see_through : {false, true}) {
-        std::vector<Part>& listed = see_through ? row.glass : row.opaque;
-        listed.clear();
-        for (const BandPart& part : see_through ? scene.glass : scene.opaque) {
-            const size_t begun = row.clusters.size();
-            const auto begin_cluster = [&](const Cluster& like) {
-                row.clusters.push_back(like);
-                row.clusters.back().first_index = listed_indices;
-                row.clusters.back().index_count = 0;
-            };
-            for (int64_t c = part.first_cluster; c < part.end_cluster; c++) {
-                const BandCluster& cluster = scene.clusters[static_cast<size_t>(c)];
-                if (cluster.low > last_row || cluster.high < first_row) continue;
-                if (!straight) begin_cluster(*cluster.cluster);
-                for (int64_t k = cluster.first; k < cluster.end; k++) {
-                    const BandTriangle& t = scene.triangles[static_cast<size_t>(k)];
-                    if (t.low > last_row || t.high < first_row) continue;
-                    if (row.clusters.size() == begun ||
-                        row.clusters.back().index_count == MOST_INDICES) {
-                        begin_cluster(anywhere);
-                    }
-                    for (int j = 0; j < 3; j++) {
-                        corners[listed_indices + j] = t.corner[j];
-                        vertices[listed_indices + j] = t.vertex[j];
-                    }
-                    listed_indices += 3;
-                    row.clusters.back().index_count += 3;
+        auto& listed_parts = see_through ? lists.glass : lists.opaque;
+        listed_parts.resize(static_cast<size_t>(rows));
+        for (auto& parts : listed_parts) parts.clear();
+        const std::vector<BandPart>& parts = see_through ? scene.glass : scene.opaque;
+        for (size_t p = 0; p < parts.size(); p++) {
+            const size_t first = static_cast<size_t>(parts[p].first_cluster);
+            const size_t last = static_cast<size_t>(parts[p].end_cluster) - 1;
+            for (int64_t k = scene.clusters[first].first; k < scene.clusters[last].end; k++) {
+                const BandTriangle& t = scene.triangles[static_cast<size_t>(k)];
+                const int32_t low = (t.low - first_row) / lines;
+                const int32_t high = (t.high - first_row) / lines;
+                for (int32_t row = low; row <= high; row++) {
+                    const int64_t at = 3 * ends[static_cast<size_t>(row)]++;
+                    memcpy(lists.corners.data() + at, t.corner, sizeof t.corner);
+                    memcpy(lists.vertices.data() + at, t.vertex, sizeof t.vertex);
                 }
             }
-            if (row.clusters.size() == begun) continue;
-            listed.push_back(part.part);
-            Part& last = listed.back();
-            last.cluster_count = static_cast<int32_t>(row.clusters.size() - begun);
-            last.corner_x = scene.x.data() + part.corner_at;
-            last.corner_y = scene.y.data() + part.corner_at;
-            last.corner_z = scene.z.data() + part.corner_at;
+            for (size_t row = 0; row < static_cast<size_t>(rows); row++) {
+                if (ends[row] == begun[row]) continue;
+                listed_parts[row].push_back({static_cast<int64_t>(p), begun[row], ends[row]});
+                begun[row] = ends[row];
+            }
         }
     }
-    // Where the lists lie is known now.
+}
+
+// A part as it is drawn, with clusters yet to come.
+Part drawn_part(const BandScene& scene, const BandPart& part, const RowLists& lists,
+                int64_t clusters) {
+    Part drawn = part.part;
+    drawn.cluster_count = static_cast<int32_t>(clusters);
+    drawn.corner_x = scene.x.data() + part.corner_at;
+    drawn.corner_y = scene.y.data() + part.corner_at;
+    drawn.corner_z = scene.z.data() + part.corner_at;
+    drawn.corner_indices = lists.corners.data();
+    drawn.vertex_indices = lists.vertices.data();
+    return drawn;
+}
+
+void point_to_clusters(RowScene& row) {
+    // Where the clusters lie is known when all are there.
     const Cluster* clusters = row.clusters.data();
     for (std::vector<Part>* list : {&row.opaque, &row.glass}) {
         for (Part& part : *list) {
             part.clusters = clusters;
-            part.corner_indices = row.corners.data();
-            part.vertex_indices = row.vertices.data();
             clusters += part.cluster_count;
         }
     }
+}
+
+// What a row may see; its triangles fill clusters of which nothing is known.
+void set_row_scene(const BandScene& scene, const RowLists& lists, size_t number, RowScene& row) {
+    row.clusters.clear();
+    for (const bool see_through : {false, true}) {
+        const std::vector<BandPart>& parts = see_through ? scene.glass : scene.opaque;
+        std::vector<Part>& drawn = see_through ? row.glass : row.opaque;
+        drawn.clear();
+        for (const RowPart& p : (see_through ? lists.glass : lists.opaque)[number]) {
+            const size_t begun = row.clusters.size();
+            for (int64_t k = p.first; k < p.end; k += CLUSTER_TRIANGLES) {
+                row.clusters.emplace_back();
+                row.clusters.back().first_index = 3 * k;
+                row.clusters.back().index_count =
+                    3 * std::min<int64_t>(CLUSTER_TRIANGLES, p.end - k);
+            }
+            const int64_t clusters = static_cast<int64_t>(row.clusters.size() - begun);
+            drawn.push_back(drawn_part(scene, parts[static_cast<size_t>(p.part)], lists, clusters));
+        }
+    }
+    point_to_clusters(row);
+}
+
+// What all rows of a band may see, in the clusters of the scene.
+void set_band_scene(const BandScene& scene, RowLists& lists, RowScene& rows) {
+    lists.corners.clear();
+    lists.vertices.clear();
+    rows.clusters.clear();
+    for (const BandCluster& cluster : scene.clusters) {
+        rows.clusters.push_back(*cluster.cluster);
+        rows.clusters.back().first_index = static_cast<int64_t>(lists.corners.size());
+        rows.clusters.back().index_count = 3 * (cluster.end - cluster.first);
+        for (int64_t k = cluster.first; k < cluster.end; k++) {
+            const BandTriangle& t = scene.triangles[static_cast<size_t>(k)];
+            lists.corners.insert(lists.corners.end(), t.corner, t.corner + 3);
+            lists.vertices.insert(lists.vertices.end(), t.vertex, t.vertex + 3);
+        }
+    }
+    for (const bool see_through : {false, true}) {
+        std::vector<Part>& drawn = see_through ? rows.glass : rows.opaque;
+        drawn.clear();
+        for (const BandPart& part : see_through ? scene.glass : scene.opaque) {
+            const int64_t clusters = part.end_cluster - part.first_cluster;
+            drawn.push_back(drawn_part(scene, part, lists, clusters));
+        }
+    }
+    point_to_clusters(rows);
 }
 
 void draw_rolling_band(const Rolling& in, int64_t first, int64_t end,
@@ -419,7 +558,14 @@ void draw_rolling_band(const Rolling& in, int64_t first, int64_t end,
     seen.scales = scene.scales.data();
     seen.at_baked_pose = scene.at_baked_pose.data();
     seen.count = static_cast<int64_t>(scene.moving_of.size());
+    const bool straight = view.table == nullptr;
     RowScene listed;
+    RowLists lists;
+    if (straight) {
+        list_rows(scene, first_row, lines, end - first, lists);
+    } else {
+        set_band_scene(scene, lists, listed);
+    }
     for (int64_t row = first; row < end; row++) {
         stand_at(row);
         for (size_t k = 0; k < scene.moving_of.size(); k++) {
@@ -428,11 +574,11 @@ void draw_rolling_band(const Rolling& in, int64_t first, int64_t end,
                         16, scene.poses.data() + 16 * k);
         }
         const int32_t top = static_cast<int32_t>(row) * lines;
-        list_rows(scene, view.table == nullptr, top, top + lines - 1, listed);
+        if (straight) set_row_scene(scene, lists, static_cast<size_t>(row - first), listed);
         const DrawList parts{listed.opaque.data(), static_cast<int64_t>(listed.opaque.size())};
         const DrawList glass{listed.glass.data(), static_cast<int64_t>(listed.glass.size())};
         draw_rows(1, scratch, view, seen, parts, glass, in.light, *in.outputs,
-                  {top, top + lines, lines});
+                  {top, top + lines, lines, straight});
     }
 }
 
