@@ -19,6 +19,7 @@ __all__ = [
     "LID_CLOSE",
     "MAGNET",
     "SEAL",
+    "SPRING_CLOSE",
     "Joint",
     "catch",
     "clicks",
@@ -57,6 +58,7 @@ DRAWER_CLOSE = SoftClose(within=0.06, speed=0.06, strength=4.0)
 DOOR_CLOSE = SoftClose(within=math.radians(25.0), speed=0.4, strength=1.0)
 FLAP_CLOSE = SoftClose(within=math.radians(20.0), speed=0.3, strength=2.0)
 LID_CLOSE = SoftClose(within=math.radians(75.0), speed=0.5, strength=0.2)
+SPRING_CLOSE = SoftClose(within=math.radians(45.0), speed=0.5, strength=0.5)
 
 MAGNET = catch(1.5)
 """Of a cupboard's door: 4 N at its edge."""

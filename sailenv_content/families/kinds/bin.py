@@ -6,7 +6,7 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
-from sailenv_content.families.hardware import LID_CLOSE
+from sailenv_content.families.hardware import LID_CLOSE, SPRING_CLOSE
 from sailenv_content.families.hollows import vessel_walls
 from sailenv_content.families.lathe import closed_ring, vessel
 from sailenv_content.families.materials import metal, paint
@@ -56,6 +56,7 @@ def _pedal(b: PieceBuilder, v: Values) -> None:
         opens_deg=8.0,
         friction=0.1,
         damping=0.2,
+        soft_close=SPRING_CLOSE,
     ):
         b.box(v.metal, (0.06, 0.09, 0.008), (r + 0.045, 0.0, 0.025), bevel=0.003)
 
@@ -85,7 +86,16 @@ def _swing(b: PieceBuilder, v: Values) -> None:
     )
     lean = 90 - back
     at = (0.067, 0.0, z + rise - 0.012)
-    with b.hinge("flap", "lid", at=at, axis=(0, 1, 0), opens_deg=38.0, friction=0.02, damping=0.05):
+    with b.hinge(
+        "flap",
+        "lid",
+        at=at,
+        axis=(0, 1, 0),
+        opens_deg=38.0,
+        friction=0.02,
+        damping=0.05,
+        soft_close=SPRING_CLOSE,
+    ):
         leaf = 0.165
         c, s = np.sin(np.radians(lean)), np.cos(np.radians(lean))
         middle = (at[0] + c * leaf / 2, 0.0, at[2] - s * leaf / 2)

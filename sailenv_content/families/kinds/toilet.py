@@ -6,7 +6,7 @@ import numpy as np
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.family import Family, Style
-from sailenv_content.families.hardware import LID_CLOSE
+from sailenv_content.families.hardware import DRAWER_CLOSE, LID_CLOSE
 from sailenv_content.families.hollow import Box
 from sailenv_content.families.lathe import closed_ring, scaled, smooth_profile, vessel
 from sailenv_content.families.materials import PieceMaterial, metal, paint, wood
@@ -141,7 +141,14 @@ def _high(b: PieceBuilder, v: Values) -> None:
     b.collide((0.05, 0.05, 1.3), (-0.275, 0.0, 1.1))
     arm = [(-0.26, 0.0, 2.05), (-0.26, 0.3, 2.06)]
     b.form(v.metal, swept(arm, 0.006, sides=8), collides="none")
-    with b.slide("pull", "handle", by=0.06, axis=(0.0, 0.0, -1.0), friction=0.5):
+    with b.slide(
+        "pull",
+        "handle",
+        by=0.06,
+        axis=(0.0, 0.0, -1.0),
+        friction=0.5,
+        soft_close=DRAWER_CLOSE,
+    ):
         chain = [(-0.26, 0.29, 2.05), (-0.26, 0.29, 1.2)]
         b.form(v.metal, swept(chain, 0.0025, sides=6), collides="none")
         grip = [(0, 0), (0.012, 0.004), (0.016, 0.03), (0.01, 0.09), (0, 0.1)]

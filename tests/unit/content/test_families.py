@@ -333,6 +333,21 @@ def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
         assert {n for n, d in named.items() if not d.stands and not d.instance.is_part} == moving
 
 
+@pytest.mark.parametrize(("family", "style"), STYLES)
+def test_what_nobody_opens_stays_shut(
+    family: str, style: str, pieces: dict[tuple[str, str], Piece]
+) -> None:
+    """Gravity moves no pedal, flap or chain: a room rests from its first frame on."""
+    parts = pieces[family, style].asset.moving
+    if not parts:
+        return
+    piece = {"name": "it", "asset": f"{family}~{style}:3", "static": True}
+    with closing(world_of(piece)) as world:
+        world.step(240)
+        joints = [world.joint(world.find(f"it {part.name}")) for part in parts]
+        assert [joint.position for joint in joints if joint is not None] == [0.0] * len(parts)
+
+
 @pytest.mark.parametrize(
     ("piece", "part", "opened", "ajar", "settled"),
     [
@@ -350,6 +365,9 @@ def test_what_opens_is_an_object_with_a_parent_and_a_handle() -> None:
         ("box~trunk:3", "lid", 1.5, 0.9, 0.0),
         ("box~jewels:3", "lid", 1.6, 0.9, 0.0),
         ("bin~pedal:3", "lid", 1.3, 0.9, 0.0),
+        ("bin~pedal:3", "pedal", 0.13, 0.1, 0.0),
+        ("bin~swing:3", "flap", 0.6, 0.5, 0.0),
+        ("toilet~high:3", "pull", 0.05, 0.04, 0.0),
         ("washing_machine~top:3", "lid", 1.3, 0.9, 0.0),
     ],
 )
