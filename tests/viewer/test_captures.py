@@ -12,13 +12,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import expect
 
 from sailenv_ros.dataset.live_capture import LiveCapture
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
 from sailenv_ros.viewer.viewer_limits import ViewerLimits
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 from tests.support.viewer_socket import ViewerSocket, connected, in_a_loop, page_of
 from tests.viewer.conftest import SMALL
 
@@ -29,12 +29,6 @@ def server(simulation: Simulation) -> Iterator[ViewerServer]:
     with ViewerServer(simulation, port=0, data_sets=LiveCapture()) as server:
         server.set_intrinsics(SMALL)
         yield server
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
 
 
 def _downloaded(server: ViewerServer, key: str) -> zipfile.ZipFile:
@@ -157,24 +151,19 @@ def test_without_a_maker_nothing_is_offered(simulation: Simulation) -> None:
 
 
 @pytest.mark.slow
-def test_the_page_saves_it(browser: Browser, server: ViewerServer) -> None:
-    opened = OpenPage(browser, server.url)
-    try:
-        opened.wait_for_frames()
-        opened.tab("Scene")
-        page = opened.page
-        page.select_option("#capture-format", "nerfstudio")
-        page.fill("#capture-frames", "3")
-        page.fill("#capture-rate", "10")
-        with page.expect_download() as coming:
-            page.click("button.capture")
-        assert coming.value.suggested_filename == "optical_nerfstudio.zip"
-        with zipfile.ZipFile(coming.value.path()) as archive:
-            table = json.loads(archive.read("optical_nerfstudio/transforms.json"))
-        assert len(table["frames"]) == 3
-        expect(page.locator("#captured")).to_contain_text("3 frames, ")
-        page.fill("#capture-frames", "301")
+def test_the_page_saves_it(opened: OpenPage) -> None:
+    opened.tab("Scene")
+    page = opened.page
+    page.select_option("#capture-format", "nerfstudio")
+    page.fill("#capture-frames", "3")
+    page.fill("#capture-rate", "10")
+    with page.expect_download() as coming:
         page.click("button.capture")
-        expect(page.locator("#captured")).to_contain_text("frames")
-    finally:
-        opened.close()
+    assert coming.value.suggested_filename == "optical_nerfstudio.zip"
+    with zipfile.ZipFile(coming.value.path()) as archive:
+        table = json.loads(archive.read("optical_nerfstudio/transforms.json"))
+    assert len(table["frames"]) == 3
+    expect(page.locator("#captured")).to_contain_text("3 frames, ")
+    page.fill("#capture-frames", "301")
+    page.click("button.capture")
+    expect(page.locator("#captured")).to_contain_text("frames")

@@ -7,20 +7,13 @@ import json
 import urllib.error
 import urllib.request
 import zipfile
-from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import expect
 
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import OpenPage, chromium
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
+from tests.support.browser import OpenPage
 
 
 def _asked(server: ViewerServer, path: str) -> tuple[int, str, bytes]:
@@ -57,15 +50,10 @@ def test_other_formats_are_refused(server: ViewerServer, wanted: str) -> None:
 
 
 @pytest.mark.slow
-def test_the_page_downloads_it(browser: Browser, server: ViewerServer) -> None:
-    opened = OpenPage(browser, server.url)
-    try:
-        opened.wait_for_frames()
-        opened.tab("Scene")
-        opened.page.select_option("#export-format", "usdz")
-        with opened.page.expect_download() as coming:
-            opened.page.click("button.export")
-        assert coming.value.suggested_filename == "optical.usdz"
-        expect(opened.page.locator("#exported")).to_contain_text("optical.usdz, ")
-    finally:
-        opened.close()
+def test_the_page_downloads_it(opened: OpenPage) -> None:
+    opened.tab("Scene")
+    opened.page.select_option("#export-format", "usdz")
+    with opened.page.expect_download() as coming:
+        opened.page.click("button.export")
+    assert coming.value.suggested_filename == "optical.usdz"
+    expect(opened.page.locator("#exported")).to_contain_text("optical.usdz, ")

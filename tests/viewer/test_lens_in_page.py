@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +11,7 @@ from playwright.sync_api import expect
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 
 pytestmark = pytest.mark.slow
 
@@ -60,23 +57,11 @@ PAINTED = """colour => {
 """Width of what lies over the large picture, and numbers of the pixels painted in a colour."""
 
 
-@pytest.fixture(scope="module")
-def simulation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulation]:
-    path: Path = tmp_path_factory.mktemp("scenes") / "wide.yaml"
-    path.write_text(SCENE, encoding="utf-8")
-    with Simulation(path) as simulation:
-        yield simulation
-
-
 @pytest.fixture
-def opened(server: ViewerServer) -> Iterator[OpenPage]:
-    with chromium() as browser:
-        page = OpenPage(browser, server.url)
-        page.wait_for_frames()
-        page.page.locator("#agent").select_option(label="wide")
-        expect(page.page.locator("#lens")).to_contain_text("equidistant")
-        yield page
-        page.close()
+def opened(opened: OpenPage) -> OpenPage:
+    opened.page.locator("#agent").select_option(label="wide")
+    expect(opened.page.locator("#lens")).to_contain_text("equidistant")
+    return opened
 
 
 def painted(opened: OpenPage, colour: list[int] | None = None) -> np.ndarray:

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.slow
 
-CLASS = """
+SCENE = """
 version: 1
 objects:
   - {name: one, asset: cube, position: [1, 0, 1], gravity: false}
@@ -24,28 +20,14 @@ lessons: {sequence: [{objects: [one], duration: 1000}, {objects: [two], duration
 """
 
 
-@pytest.fixture(scope="module")
-def simulation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulation]:
-    folder: Path = tmp_path_factory.mktemp("scenes")
-    (folder / "class.yaml").write_text(CLASS, encoding="utf-8")
-    with Simulation("class", scene_paths=[folder]) as simulation:
-        yield simulation
-
-
-def test_lessons_are_told_stopped_and_begun(simulation: Simulation, server: ViewerServer) -> None:
-    with chromium() as browser:
-        opened = OpenPage(browser, server.url)
-        try:
-            page = opened.page
-            opened.wait_for_frames(2)
-            page.get_by_role("tab", name="Scene").click()
-            told = page.locator("#lesson")
-            until(lambda: told.inner_text() == "lap 1, lesson 1 of 2: one", "the lesson")
-            page.locator("button.stop-lessons").click()
-            until(lambda: told.inner_text().endswith("one (stopped)"), "the end")
-            assert simulation.lesson is not None
-            assert simulation.lesson.phase == "stopped"
-            page.locator("button.start-lessons").click()
-            until(lambda: told.inner_text() == "lap 1, lesson 1 of 2: one", "a new beginning")
-        finally:
-            opened.close()
+def test_lessons_are_told_stopped_and_begun(simulation: Simulation, opened: OpenPage) -> None:
+    page = opened.page
+    page.get_by_role("tab", name="Scene").click()
+    told = page.locator("#lesson")
+    until(lambda: told.inner_text() == "lap 1, lesson 1 of 2: one", "the lesson")
+    page.locator("button.stop-lessons").click()
+    until(lambda: told.inner_text().endswith("one (stopped)"), "the end")
+    assert simulation.lesson is not None
+    assert simulation.lesson.phase == "stopped"
+    page.locator("button.start-lessons").click()
+    until(lambda: told.inner_text() == "lap 1, lesson 1 of 2: one", "a new beginning")

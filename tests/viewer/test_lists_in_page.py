@@ -2,33 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
-from playwright.sync_api import Browser, Locator, expect
+from playwright.sync_api import Locator, expect
 
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.viewer import ViewerServer
 from sailenv_ros.viewer.scene_json import skies_to_json
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
-
-
-@pytest.fixture
-def opened(browser: Browser, server: ViewerServer, simulation: Simulation) -> Iterator[OpenPage]:
-    simulation.change_scene("optical")
-    opened = OpenPage(browser, server.url)
-    opened.wait_for_frames()
-    yield opened
-    opened.close()
 
 
 def press(opened: OpenPage, target: Locator) -> None:

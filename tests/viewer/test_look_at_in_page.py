@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Locator, expect
 
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.look_at import LookAt
-from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.slow
@@ -30,23 +27,6 @@ agents:
 """
 
 EYE = "debug_agent"
-
-
-@pytest.fixture(scope="module")
-def simulation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulation]:
-    path: Path = tmp_path_factory.mktemp("scenes") / "stand.yaml"
-    path.write_text(SCENE, encoding="utf-8")
-    with Simulation(path) as simulation:
-        yield simulation
-
-
-@pytest.fixture
-def opened(server: ViewerServer) -> Iterator[OpenPage]:
-    with chromium() as browser:
-        page = OpenPage(browser, server.url)
-        page.wait_for_frames()
-        yield page
-        page.close()
 
 
 def heading(simulation: Simulation) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,28 +10,18 @@ import pytest
 from PIL import Image
 
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.slow
 
-DEN = """
+SCENE = """
 version: 1
 room: {size: [4, 4, 3]}
 lights: [{name: lamp, type: point, position: [0, 0, 2.5], intensity: 1}]
 objects: [{name: box, asset: cube, position: [1, 0, 0.5], scale: 0.6, static: true}]
 mover: {position: [-1.8, 0, 1.4]}
 """
-
-
-@pytest.fixture(scope="module")
-def simulation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulation]:
-    """A room with a box, whose scenes are saved into a folder of the test's own."""
-    folder = tmp_path_factory.mktemp("scenes")
-    (folder / "den.yaml").write_text(DEN, encoding="utf-8")
-    with Simulation("den", scene_paths=[folder]) as simulation:
-        yield simulation
 
 
 def painted(simulation: Simulation, name: str) -> list[dict[str, object]]:
@@ -43,39 +32,33 @@ def painted(simulation: Simulation, name: str) -> list[dict[str, object]]:
 
 
 def test_materials_pictures_and_chance(
-    simulation: Simulation, server: ViewerServer, tmp_path: Path
+    simulation: Simulation, opened: OpenPage, tmp_path: Path
 ) -> None:
     """A material, a picture of one's own, its own again; the scene drawn anew and kept."""
     picture = tmp_path / "mine.png"
     Image.fromarray(np.full((30, 40, 3), 120, np.uint8)).save(picture)
     box = simulation.get_object("box").id
-    with chromium() as browser:
-        opened = OpenPage(browser, server.url)
-        try:
-            page = opened.page
-            opened.wait_for_frames(2)
-            page.get_by_role("tab", name="Object").click()
-            page.locator(f'#objects [data-id="{box}"]').click()
-            page.locator("#material").select_option("carpet")
-            until(lambda: painted(simulation, "box") == [{"material": "carpet"}], "carpet")
-            page.locator("#material-picture").set_input_files(picture)
-            until(lambda: "picture" in str(painted(simulation, "box")), "the picture")
-            page.get_by_text("Its own again").click()
-            until(lambda: painted(simulation, "box") == [], "its own materials")
-            epoch = simulation.info.epoch
-            page.get_by_role("tab", name="Scene").click()
-            page.locator("button.randomise").click()
-            until(lambda: simulation.info.epoch > epoch, "a new epoch")
-            until(lambda: painted(simulation, "floor") != [], "a floor")
-            drawn = painted(simulation, "floor")
-            page.locator("button.keep-drawn").click()
-            until(lambda: _kept(simulation) != [], "the kept scene")
-            (kept,) = _kept(simulation)
-            simulation.change_scene(kept)
-            assert painted(simulation, "floor") == drawn
-        finally:
-            opened.close()
+    page = opened.page
+    page.get_by_role("tab", name="Object").click()
+    page.locator(f'#objects [data-id="{box}"]').click()
+    page.locator("#material").select_option("carpet")
+    until(lambda: painted(simulation, "box") == [{"material": "carpet"}], "carpet")
+    page.locator("#material-picture").set_input_files(picture)
+    until(lambda: "picture" in str(painted(simulation, "box")), "the picture")
+    page.get_by_text("Its own again").click()
+    until(lambda: painted(simulation, "box") == [], "its own materials")
+    epoch = simulation.info.epoch
+    page.get_by_role("tab", name="Scene").click()
+    page.locator("button.randomise").click()
+    until(lambda: simulation.info.epoch > epoch, "a new epoch")
+    until(lambda: painted(simulation, "floor") != [], "a floor")
+    drawn = painted(simulation, "floor")
+    page.locator("button.keep-drawn").click()
+    until(lambda: _kept(simulation) != [], "the kept scene")
+    (kept,) = _kept(simulation)
+    simulation.change_scene(kept)
+    assert painted(simulation, "floor") == drawn
 
 
 def _kept(simulation: Simulation) -> list[str]:
-    return [name for name in simulation.info.scenes if name.startswith("den_")]
+    return [name for name in simulation.info.scenes if name.startswith("own_")]

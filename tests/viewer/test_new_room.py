@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import expect
 
 from sailenv_ros.authoring.room_rules.rule_files import room_kinds
 from sailenv_ros.cli.main import main
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 from tests.support.viewer_socket import in_a_loop, page_of
 from tests.support.waiting import until
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with chromium() as browser:
-        yield browser
 
 
 @in_a_loop
@@ -45,26 +38,20 @@ async def test_kinds_are_listed_and_a_room_is_begun(
 
 @pytest.mark.slow
 def test_a_room_is_made_and_kept_in_a_browser(
-    browser: Browser, server: ViewerServer, simulation: Simulation, own_scenes: Path
+    opened: OpenPage, simulation: Simulation, own_scenes: Path
 ) -> None:
-    simulation.change_scene("optical")
-    opened = OpenPage(browser, server.url)
-    try:
-        opened.wait_for_frames()
-        page = opened.page
-        opened.tab("Scene")
-        page.select_option("#room-kind", "bathroom")
-        page.fill("#room-seed", "3")
-        page.click("button.make-room")
-        until(lambda: simulation.info.scene == "generated_bathroom_3", "the room")
-        expect(page.locator("#room-made")).to_contain_text("generated:bathroom:3")
-        page.click("button.again-room")
-        until(lambda: simulation.info.scene == "generated_bathroom_4", "the next room")
-        opened.until(lambda: page.input_value("#room-seed") == "4", "the next seed")
-        expect(page.locator("#room-made")).to_contain_text("generated:bathroom:4")
-        page.click("button.keep-room")
-        file = own_scenes / "bathroom_4.yaml"
-        until(file.is_file, "the file")
-        assert main(["scene", "check", "--physics", str(file)]) == 0
-    finally:
-        opened.close()
+    page = opened.page
+    opened.tab("Scene")
+    page.select_option("#room-kind", "bathroom")
+    page.fill("#room-seed", "3")
+    page.click("button.make-room")
+    until(lambda: simulation.info.scene == "generated_bathroom_3", "the room")
+    expect(page.locator("#room-made")).to_contain_text("generated:bathroom:3")
+    page.click("button.again-room")
+    until(lambda: simulation.info.scene == "generated_bathroom_4", "the next room")
+    opened.until(lambda: page.input_value("#room-seed") == "4", "the next seed")
+    expect(page.locator("#room-made")).to_contain_text("generated:bathroom:4")
+    page.click("button.keep-room")
+    file = own_scenes / "bathroom_4.yaml"
+    until(file.is_file, "the file")
+    assert main(["scene", "check", "--physics", str(file)]) == 0

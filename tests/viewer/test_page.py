@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -20,28 +20,10 @@ from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.views import FIVE_VIEWS
 from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import PHONE, OpenPage, chromium
+from tests.support.browser import PHONE, OpenPage
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """The browser of this module's tests."""
-    with chromium() as browser:
-        yield browser
-
-
-@pytest.fixture
-def opened(browser: Browser, server: ViewerServer, simulation: Simulation) -> Iterator[OpenPage]:
-    """The page on the optical scene, as it is at its start, with a first picture."""
-    simulation.change_scene("optical")
-    opened = OpenPage(browser, server.url)
-    opened.wait_for_frames()
-    yield opened
-    simulation.resume()  # also after a test that failed while time stood
-    opened.close()
 
 
 def controller(simulation: Simulation) -> str:

@@ -8,8 +8,7 @@ import pytest
 from playwright.sync_api import expect
 
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 from tests.support.divided_bed import LEFT, RIGHT, write_bed_pack
 from tests.support.waiting import until
 
@@ -27,23 +26,17 @@ def simulation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulation]
             yield simulation
 
 
-def test_a_part_is_listed_and_selects_its_body(
-    simulation: Simulation, server: ViewerServer
-) -> None:
+def test_a_part_is_listed_and_selects_its_body(simulation: Simulation, opened: OpenPage) -> None:
     """Parts stand in the list; who chooses one edits the body, and deletes both."""
     body = simulation.spawn_object("test_bed", position=(3.0, 0.0, 0.0), object_name="cot")
     parts = {one.name: one.id for one in simulation.info.instances if one.parent == body}
     assert set(parts) == {f"cot/{LEFT}", f"cot/{RIGHT}"}
-    with chromium() as browser:
-        opened = OpenPage(browser, server.url)
-        opened.wait_for_frames()
-        opened.tab("Object")
-        row = opened.page.locator(f"#objects [data-id='{parts[f'cot/{LEFT}']}']")
-        expect(row).to_contain_text("part")
-        row.click()
-        opened.until(lambda: opened.data("selected") == str(body), "the body to be selected")
-        opened.page.locator("#stage").focus()
-        opened.page.keyboard.press("Delete")
-        gone = {body, *parts.values()}
-        until(lambda: not gone & {one.id for one in simulation.info.instances}, "all to be gone")
-        opened.close()
+    opened.tab("Object")
+    row = opened.page.locator(f"#objects [data-id='{parts[f'cot/{LEFT}']}']")
+    expect(row).to_contain_text("part")
+    row.click()
+    opened.until(lambda: opened.data("selected") == str(body), "the body to be selected")
+    opened.page.locator("#stage").focus()
+    opened.page.keyboard.press("Delete")
+    gone = {body, *parts.values()}
+    until(lambda: not gone & {one.id for one in simulation.info.instances}, "all to be gone")

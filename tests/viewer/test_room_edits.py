@@ -16,7 +16,7 @@ from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.operations.rooms import RoomOperations
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 from tests.support.viewer_socket import in_a_loop, page_of
 
 SMALL_ROOM = """
@@ -182,13 +182,6 @@ def test_names_of_parts_that_others_have(empty: Simulation) -> None:
     with pytest.raises(InvalidRequest, match="floor"):
         RoomOperations.restore_room(empty, *made)
     assert room_of(empty) is None
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """The browser of this module's test."""
-    with chromium() as browser:
-        yield browser
 
 
 def drag(opened: OpenPage, start: tuple[float, float], end: tuple[float, float]) -> None:

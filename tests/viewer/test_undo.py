@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, expect
 
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.viewer import ViewerServer
-from tests.support.browser import OpenPage, chromium
+from tests.support.browser import OpenPage
 from tests.support.viewer_socket import in_a_loop, page_of
 from tests.support.waiting import until
 
@@ -150,13 +150,6 @@ async def test_what_others_have_taken_away_is_told(server: ViewerServer, still: 
         before = by_name(still)
         assert made["name"] in await page.refusal("undo")
         assert by_name(still) == before
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """The browser of this module's test."""
-    with chromium() as browser:
-        yield browser
 
 
 @pytest.mark.slow
