@@ -178,7 +178,7 @@ class PieceBuilder:
     @contextmanager
     def part(self, name: str, category: str) -> Iterator[None]:
         """Label all that is added inside as a part; inside a part, as a part of that."""
-        with self._adding_to(Component(name=self._named(name), category=category)):
+        with self._adding_to(name, category):
             yield
 
     @contextmanager
@@ -208,7 +208,7 @@ class PieceBuilder:
             soft_close=soft_close,
             detents=detents,
         )
-        with self._adding_to(Component(name=self._named(name), category=category, joint=joint)):
+        with self._adding_to(name, category, joint):
             yield
 
     @contextmanager
@@ -237,11 +237,12 @@ class PieceBuilder:
             soft_close=soft_close,
             detents=detents,
         )
-        with self._adding_to(Component(name=self._named(name), category=category, joint=joint)):
+        with self._adding_to(name, category, joint):
             yield
 
     @contextmanager
-    def _adding_to(self, component: Component) -> Iterator[None]:
+    def _adding_to(self, name: str, category: str, joint: Joint | None = None) -> Iterator[None]:
+        component = Component(name=self._named(name), category=category, joint=joint)
         before, self._at = self._at, component
         self.components.append(component)
         try:

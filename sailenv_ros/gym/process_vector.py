@@ -12,10 +12,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
-from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector import VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
@@ -25,7 +25,7 @@ from sailenv_ros.errors import (
     SailenvError,
     SimulationClosed,
 )
-from sailenv_ros.gym.room_env import Arrays, Info, RoomEnv
+from sailenv_ros.gym.room_env import Arrays, Info
 from sailenv_ros.gym.shared_vector import (
     COUNT,
     SharedVectorEnv,
@@ -79,10 +79,7 @@ class ProcessVectorEnv(VectorEnv[Arrays, Any, Any]):
         Of each environment.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
-        **RoomEnv.metadata,
-        "autoreset_mode": AutoresetMode.NEXT_STEP,
-    }
+    metadata = SharedVectorEnv.metadata
 
     def __init__(
         self,

@@ -6,10 +6,18 @@ Builds on `field_types`; knows no particular scene entry.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Annotated, Any, ClassVar, TypeAlias
+from typing import Annotated, Any, ClassVar, Self, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    GetJsonSchemaHandler,
+    ModelWrapValidatorHandler,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError, core_schema
 
 from sailenv_ros.scene.field_types import Colour, Number, Text, Vector
 from sailenv_ros.types.lights import MAX_RADIANCE
@@ -27,6 +35,7 @@ __all__ = [
     "LinearColour",
     "MetresPerSecond",
     "Name",
+    "NamedModel",
     "Orientation",
     "Position",
     "Radiance",
@@ -70,6 +79,30 @@ class SceneModel(BaseModel):
                     {"field": ".".join(map(str, place)), "sentence": sentence},
                 )
         return self
+
+
+class NamedModel(SceneModel):
+    """An entry that a name alone stands for: the value of its field `key`, all else as it is."""
+
+    key: ClassVar[str]
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _by_name(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        return handler({cls.key: value} if isinstance(value, str) else value)
+
+    @model_serializer(mode="wrap", when_used="json")
+    def _to_name(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any] | str:
+        dumped: dict[str, Any] = handler(self)
+        return dumped[self.key] if set(dumped) == {self.key} else dumped
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        described = handler.resolve_ref_schema(handler(schema))
+        described["type"] = ["object", "string"]
+        return described
 
 
 LinearColour: TypeAlias = Annotated[tuple[float, float, float], Colour()]

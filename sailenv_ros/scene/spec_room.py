@@ -13,15 +13,12 @@ from pydantic import (
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
-    ModelWrapValidatorHandler,
     SerializerFunctionWrapHandler,
-    model_serializer,
-    model_validator,
 )
 from pydantic_core import core_schema
 
 from sailenv_ros.scene.field_types import Choice, Number, Switch, Vector, optional
-from sailenv_ros.scene.fields import LinearColour, Name, Rule, SceneModel
+from sailenv_ros.scene.fields import LinearColour, Name, NamedModel, Rule, SceneModel
 from sailenv_ros.scene.partition_rules import (
     along_an_axis,
     corners_apart,
@@ -93,17 +90,14 @@ class _OrNone:
         return {"anyOf": [{"type": "boolean"}, handler(schema)]}
 
 
-class SurfaceSpec(LookSpec):
+class SurfaceSpec(NamedModel, LookSpec):
     """Material of a wall, floor or ceiling; a name alone stands for its material."""
+
+    key = "material"
 
     material: MaterialName = Field(
         default="plaster", description="e.g. plaster, oak_planks, white_tiles, wallpaper_damask"
     )
-
-    @model_validator(mode="wrap")
-    @classmethod
-    def _by_name(cls, value: Any, handler: ModelWrapValidatorHandler[SurfaceSpec]) -> SurfaceSpec:
-        return handler({"material": value} if isinstance(value, str) else value)
 
     def keys(self) -> dict[str, Any]:
         """Return what differs from the defaults, and the material, as a file would have it."""
@@ -111,19 +105,6 @@ class SurfaceSpec(LookSpec):
         given = {"material": dumped} if isinstance(dumped, str) else dict(dumped)
         # A picture takes the place of the material that is there of itself.
         return given if self.picture is not None else {"material": self.material, **given}
-
-    @model_serializer(mode="wrap", when_used="json")
-    def _to_name(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any] | str:
-        dumped: dict[str, Any] = handler(self)
-        return dumped["material"] if set(dumped) == {"material"} else dumped
-
-    @classmethod
-    def __get_pydantic_json_schema__(
-        cls, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        described = handler.resolve_ref_schema(handler(schema))
-        described["type"] = ["object", "string"]
-        return described
 
 
 class WallMaterialsSpec(SceneModel):

@@ -21,16 +21,7 @@ def boxy(b: PieceBuilder, v: Values) -> None:
     width, d = width_of(v), v.depth
     base = v.legs
     seat(b, v, width, d, base)
-    for sy in (-1.0, 1.0):
-        y = sy * (width - v.arm) / 2
-        pad(
-            b,
-            v.cover,
-            (d, v.arm - 0.004, v.arm_height - base),
-            (0.0, y, (v.arm_height + base) / 2),
-            puff=0.006,
-            radius=v.edge,
-        )
+    _block_arms(b, v, width, d, -1.0)
     four_legs(b, v.frame, v.leg, d - 0.1, width - 0.12, base + 0.005, 0.045)
     loose_cushions(b, v, width, d)
     throw_over_arm(b, v, width)
@@ -232,26 +223,19 @@ def _corner(b: PieceBuilder, v: Values) -> None:
     loose_cushions(b, v, width, d)
 
 
+def _block_arms(b: PieceBuilder, v: Values, width: float, d: float, first: float) -> None:
+    """Add arms that are blocks, the one at that side (1 or -1) first."""
+    for side in (first, -first):
+        y = side * (width - v.arm) / 2
+        size = (d, v.arm - 0.004, v.arm_height - v.legs)
+        middle = (0.0, y, (v.arm_height + v.legs) / 2)
+        pad(b, v.cover, size, middle, puff=0.006, radius=v.edge)
+
+
 def _boxy_without_arm(b: PieceBuilder, v: Values, width: float, d: float, side: float) -> None:
     base = v.legs
     seat(b, v, width, d, base)
-    y = -side * (width - v.arm) / 2
-    pad(
-        b,
-        v.cover,
-        (d, v.arm - 0.004, v.arm_height - base),
-        (0.0, y, (v.arm_height + base) / 2),
-        puff=0.006,
-        radius=v.edge,
-    )
-    pad(
-        b,
-        v.cover,
-        (d, v.arm - 0.004, v.arm_height - base),
-        (0.0, -y, (v.arm_height + base) / 2),
-        puff=0.006,
-        radius=v.edge,
-    )
+    _block_arms(b, v, width, d, -side)
     four_legs(b, v.frame, v.leg, d - 0.1, width - 0.12, base + 0.005, 0.045)
 
 
