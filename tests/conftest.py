@@ -72,6 +72,38 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "dev"))
 
 
 @pytest.fixture
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A cache of the test's own."""
+    folder = tmp_path / "cache"
+    monkeypatch.setenv("SAILENV_CACHE", str(folder))
+    return folder
+
+
+@pytest.fixture
+def packs(own_cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of packs of the test's own, with a cache of its own."""
+    folder = tmp_path / "pack"
+    monkeypatch.setenv("SAILENV_PACKS", str(folder))
+    return folder
+
+
+@pytest.fixture
+def own_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Folders of the test's own for what processes tell each other; none of the session's."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "none"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+
+
+@pytest.fixture
+def cell(request: pytest.FixtureRequest, own_cache: Path, tmp_path: Path) -> Path:
+    """The file of the room that the module describes as `ROOM`, with a cache of its own."""
+    file = tmp_path / "cell.yaml"
+    file.write_text(request.module.ROOM, encoding="utf-8")
+    return file
+
+
+@pytest.fixture
 def memory_folder() -> Iterator[Path]:
     """An empty folder in memory, for tests that write and sync small files thousands of times.
 

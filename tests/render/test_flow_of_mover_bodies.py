@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 
 from sailenv_ros.render.cpu.renderer import NativeRenderer
-from sailenv_ros.simulation.scenes import SceneLibrary
-from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from tests.render.test_flow_of_behaviours import WALLS, scene_of
 from tests.render.test_scene_in_motion import check, seen
+from tests.support.lockstep_core import lockstep_core
 
 
 def test_flow_is_exact_before_a_body_that_bounces(tmp_path: Path) -> None:
@@ -28,15 +27,7 @@ def test_flow_is_exact_before_a_body_that_bounces(tmp_path: Path) -> None:
     scene["movers"] = [{"name": rails["name"], "position": position, "body": {**body, **motion}}]
     path = tmp_path / "box.yaml"
     path.write_text(json.dumps(scene), encoding="utf-8")  # JSON is YAML, too
-    core = SynchronousSimulation(
-        SceneLibrary(),
-        path,
-        NativeRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=2,
-        paused=False,
-    )
+    core = lockstep_core(path, renderer=NativeRenderer(), seed=2)
     lens = CameraIntrinsics(width=96, height=72, vertical_fov_deg=70.0)
     core.register_agent(AgentSpec(name="rider", intrinsics=lens, mover=rails["name"]))
     last, signs = seen(core, "rider"), set()

@@ -9,15 +9,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.assets import AssetLibrary, load_categories
 from sailenv_ros.assets.outside.kinds.street import HOUSES_M
 from sailenv_ros.render.cpu.renderer import NativeRenderer
-from sailenv_ros.scene import SceneSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
 from sailenv_ros.types.snapshot import WorldSnapshot
-from sailenv_ros.world.build import build_world
 from tests.render.conftest import Render
+from tests.support.built_world import built_snapshot
 
 VIEWS = ("depth", "instance", "category", "normals", "flow")
 LENS = CameraIntrinsics(width=320, height=240)
@@ -38,16 +36,7 @@ def snapshot_of(outside: Any, **room: Any) -> WorldSnapshot:
         **room,
     }
     sun = {"name": "sun", "type": "directional", "direction": [0.3, 0.7, -0.8], "intensity": 6}
-    world = build_world(
-        SceneSpec.model_validate({"version": 1, "room": keys, "lights": [sun]}),
-        assets=AssetLibrary(),
-        categories=load_categories(),
-        seed=0,
-        epoch=1,
-    )
-    snapshot = world.snapshot()
-    world.close()
-    return snapshot
+    return built_snapshot({"room": keys, "lights": [sun]})
 
 
 @pytest.fixture(scope="module")

@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.assets import AssetLibrary, load_categories
-from sailenv_ros.scene import SceneSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.snapshot import WorldSnapshot
-from sailenv_ros.world.build import build_world
 from tests.render.conftest import Render
+from tests.support.built_world import built_snapshot
 
 ROOM = {
     "size": [4.4, 3.6, 2.6],
@@ -29,20 +27,7 @@ ROOM = {
 @pytest.fixture(scope="module")
 def room() -> WorldSnapshot:
     """The room, with a window to the north and a closed door to the east."""
-    return snapshot_of({"room": ROOM})
-
-
-def snapshot_of(scene: dict[str, Any]) -> WorldSnapshot:
-    world = build_world(
-        SceneSpec.model_validate({"version": 1, **scene}),
-        assets=AssetLibrary(),
-        categories=load_categories(),
-        seed=0,
-        epoch=1,
-    )
-    snapshot = world.snapshot()
-    world.close()
-    return snapshot
+    return built_snapshot({"room": ROOM})
 
 
 def camera(pose: Pose, **keys: Any) -> Camera:
@@ -144,9 +129,9 @@ def test_no_sun_shines_through_the_ceiling_of_a_hall(render: Render) -> None:
     shot = camera(look_at((0.0, 0.0, 2.0), (4.0, 3.0, 0.0)))
     hall = {"size": [16, 14, 4], "skirting": False}
     dark, sunny = (
-        render(snapshot_of({"room": hall, "lights": shining}), shot, "rgb")["rgb"]
+        render(built_snapshot({"room": hall, "lights": shining}), shot, "rgb")["rgb"]
         for shining in ([], lights)
     )
     np.testing.assert_array_equal(sunny, dark)
-    roofless = snapshot_of({"room": {**hall, "ceiling": False}, "lights": lights})
+    roofless = built_snapshot({"room": {**hall, "ceiling": False}, "lights": lights})
     assert render(roofless, shot, "rgb")["rgb"].mean() > dark.mean() + 20

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -12,11 +11,7 @@ from sailenv_ros import AgentSpec, CameraIntrinsics, Simulation, look_at
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.undistorted import undistorted
 
-SCENE = """
-version: 1
-settled: false
-lights: [{name: sun, type: directional, direction: [1, 0.2, -1], intensity: 2}]
-objects:
+THINGS = """\
   - {name: ground, asset: plane, category: floor, static: true}
   - {name: desk, asset: cube, category: desk, static: true, scale: [0.8, 1.6, 0.7],
      position: [2, 0, 0.35]}
@@ -39,21 +34,13 @@ BENT = {
     },
 }
 VIEWS = ("rgb", "depth", "range", "instance", "category", "normals", "albedo", "flow")
-
-
-@pytest.fixture(scope="module")
-def simulation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulation]:
-    path = tmp_path_factory.mktemp("bent") / "things.yaml"
-    path.write_text(SCENE)
-    eye = AgentSpec(
-        name="eye",
-        following=False,
-        views=VIEWS,
-        intrinsics=CameraIntrinsics(width=160, height=120),
-        pose=look_at((0.0, -0.4, 1.3), (2.0, 0.0, 0.5)),
-    )
-    with Simulation(path, mode="lockstep", agent=eye) as simulation:
-        yield simulation
+EYE = AgentSpec(
+    name="eye",
+    following=False,
+    views=VIEWS,
+    intrinsics=CameraIntrinsics(width=160, height=120),
+    pose=look_at((0.0, -0.4, 1.3), (2.0, 0.0, 0.5)),
+)
 
 
 @pytest.mark.parametrize("name", BENT)

@@ -42,8 +42,8 @@ def load(path: Path) -> NDArray[Any]:
     return np.asarray(np.load(io.BytesIO(gzip.decompress(path.read_bytes()))))
 
 
-def captured(folder: Path, count: int) -> tuple[list[Frame], dict[str, Any]]:
-    """Write a stream of frames; return them and the files' JSON."""
+def begun(folder: Path) -> Simulation:
+    """Begin the scene before its agent, the eye."""
     scene = folder / "scene.yaml"
     scene.write_text(SCENE)
     agent = AgentSpec(
@@ -52,9 +52,14 @@ def captured(folder: Path, count: int) -> tuple[list[Frame], dict[str, Any]]:
         pose=look_at((-2.5, 0.0, 1.2), (0.0, 0.0, 0.6)),
         following=False,
     )
+    return Simulation(scene, mode="lockstep", agent=agent)
+
+
+def captured(folder: Path, count: int) -> tuple[list[Frame], dict[str, Any]]:
+    """Write a stream of frames; return them and the files' JSON."""
     frames = []
     with (
-        Simulation(scene, mode="lockstep", agent=agent) as simulation,
+        begun(folder) as simulation,
         DatasetWriter(folder / "lve", ["lve"]) as writer,
     ):
         for _ in range(count):
@@ -138,16 +143,8 @@ def test_a_single_frame_is_no_stream(tmp_path: Path) -> None:
 
 def test_classes_that_come_and_go_have_one_number_each(tmp_path: Path) -> None:
     """All are numbered by their ids, whenever they are there; a writer that was ended goes on."""
-    scene = tmp_path / "scene.yaml"
-    scene.write_text(SCENE)
-    agent = AgentSpec(
-        name="eye",
-        intrinsics=CameraIntrinsics(width=SIZE, height=SIZE),
-        pose=look_at((-2.5, 0.0, 1.2), (0.0, 0.0, 0.6)),
-        following=False,
-    )
     frames: list[Any] = []
-    with Simulation(scene, mode="lockstep", agent=agent) as simulation:
+    with begun(tmp_path) as simulation:
         for number in range(6):
             if number == 2:
                 simulation.despawn_object("ball")

@@ -34,15 +34,6 @@ EYE = AgentSpec(
 )
 
 
-@pytest.fixture
-def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A small room's file, and a cache of the test's own."""
-    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    file = tmp_path / "cell.yaml"
-    file.write_text(ROOM)
-    return file
-
-
 @pytest.mark.slow
 def test_light_that_is_baked_meanwhile_is_shown(cell: Path) -> None:
     """The same picture as that of a simulation that begins with the light."""

@@ -39,15 +39,6 @@ objects:
 """
 
 
-@pytest.fixture
-def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A room's file, and a cache of the test's own."""
-    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    file = tmp_path / "cell.yaml"
-    file.write_text(ROOM)
-    return file
-
-
 def contents(library: SceneLibrary, scene: str | Path) -> SceneContents:
     """What is in a scene's world just after it was built."""
     world = library.build(scene)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -37,19 +36,10 @@ lights:
 
 
 @pytest.fixture
-def stage(tmp_path: Path) -> Path:
+def stage(stage: Path) -> Path:
     for name, text in (("arm", ARM), ("cart", CART), ("car", STEERED)):
-        (tmp_path / f"{name}.urdf").write_text(text, encoding="utf-8")
-    path = tmp_path / "stage.yaml"
-    path.write_text(STAGE, encoding="utf-8")
-    return path
-
-
-@pytest.fixture
-def core(stage: Path) -> Iterator[SynchronousSimulation]:
-    made = lockstep_core(stage)
-    yield made
-    made.close()
+        stage.with_name(f"{name}.urdf").write_text(text, encoding="utf-8")
+    return stage
 
 
 def joints(core: SynchronousSimulation, robot: str = "") -> dict[str, float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -83,15 +82,12 @@ def test_a_room_is_metered_in_the_light_that_its_lamps_give() -> None:
 
 
 @pytest.fixture
-def cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def cell(cell: Path) -> Path:
     """A room without an exposure of its own, baked coarsely."""
-    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    file = tmp_path / "cell.yaml"
-    file.write_text(ROOM)
-    snapshot = SceneLibrary().snapshot(file)
+    snapshot = SceneLibrary().snapshot(cell)
     baked = bake(snapshot, settings=replace(COARSE, texel_m=0.2, rays=4, pass_rays=4))
     store_baked(replace(baked, fingerprint=fingerprint(snapshot)))
-    return file
+    return cell
 
 
 def exposure_of(scene: Path, *, baked_light: bool = True) -> float:

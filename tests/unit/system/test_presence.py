@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import pytest
@@ -18,6 +17,8 @@ from sailenv_ros.system.presence import (
     simulator_is_present,
 )
 
+pytestmark = pytest.mark.usefixtures("own_folders")
+
 HOLD = """
 import sys
 from sailenv_ros.system.presence import SimulatorLock
@@ -25,13 +26,6 @@ with SimulatorLock(7, "/sailenv"):
     print("held", flush=True)
     sys.stdin.read()
 """
-
-
-@pytest.fixture(autouse=True)
-def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "none"))
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
 
 
 def test_one_simulator_of_a_name() -> None:

@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.assets import AssetLibrary, load_categories
-from sailenv_ros.scene import SceneSpec
-from sailenv_ros.world.build import build_world
 from sailenv_ros.world.world import World
+from tests.support.built_world import built_world
 
 OPENINGS = [
     {"type": "window", "wall": "north", "at": 0.4, "curtains": True},
@@ -21,14 +19,7 @@ OPENINGS = [
 
 def build(objects: list[dict[str, Any]], **room: Any) -> World:
     keys = {"size": [4.0, 3.0, 2.5], "openings": OPENINGS, **room}
-    spec = SceneSpec.model_validate({"version": 1, "room": keys, "objects": objects})
-    return build_world(
-        spec,
-        assets=AssetLibrary(),
-        categories=load_categories(),
-        seed=0,
-        epoch=1,
-    )
+    return built_world({"room": keys, "objects": objects})
 
 
 def position(world: World, name: str) -> np.ndarray[Any, np.dtype[np.float64]]:

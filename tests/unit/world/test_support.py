@@ -6,12 +6,10 @@ from typing import Any
 
 import pytest
 
-from sailenv_ros.assets import AssetLibrary, load_categories
-from sailenv_ros.scene import SceneSpec
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.world.build import build_world
 from sailenv_ros.world.support import overlap_m, standing_place
 from sailenv_ros.world.world import World
+from tests.support.built_world import built_world
 
 
 @pytest.fixture
@@ -21,13 +19,7 @@ def make(request: pytest.FixtureRequest) -> Any:
     def build(*objects: dict[str, Any]) -> World:
         box = {"name": "box", "asset": "cube", "scale": 0.2, "position": [5.0, 5.0, 3.0]}
         entries = [{"name": f"o{k}", "static": True, **entry} for k, entry in enumerate(objects)]
-        world = build_world(
-            SceneSpec.model_validate({"version": 1, "objects": [box, *entries]}),
-            assets=AssetLibrary(),
-            categories=load_categories(),
-            seed=0,
-            epoch=1,
-        )
+        world = built_world({"objects": [box, *entries]})
         request.addfinalizer(world.close)
         return world
 

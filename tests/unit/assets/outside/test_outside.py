@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sailenv_ros.assets import AssetLibrary, load_categories
+from sailenv_ros.assets import AssetLibrary
 from sailenv_ros.assets.outside import Daylight, outside_asset
 from sailenv_ros.assets.outside.building import _made
 from sailenv_ros.assets.outside.kinds.street import HOUSES_M
@@ -17,11 +17,10 @@ from sailenv_ros.assets.outside.scenery import GROUND_M
 from sailenv_ros.assets.pack import AssetPack
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.light.bake.fingerprint import fingerprint
-from sailenv_ros.scene import SceneSpec
 from sailenv_ros.scene.spec_room import RoomSpec
 from sailenv_ros.types.model import Asset
-from sailenv_ros.world.build import build_world
 from sailenv_ros.world.world import World
+from tests.support.built_world import built_world
 from tests.support.divided_bed import write_bed_pack
 
 DAY = Daylight(
@@ -150,13 +149,7 @@ SCENE: dict[str, Any] = {
 def world_of(folder: Path, outside: str | None) -> World:
     write_bed_pack(folder)
     scene = {**SCENE, "room": {**SCENE["room"], **({"outside": outside} if outside else {})}}
-    return build_world(
-        SceneSpec.model_validate(scene),
-        assets=AssetLibrary([Primitives(), AssetPack(folder)]),
-        categories=load_categories(),
-        seed=0,
-        epoch=1,
-    )
+    return built_world(scene, AssetLibrary([Primitives(), AssetPack(folder)]))
 
 
 def test_ids_of_all_else_and_the_bake_stay_as_they_are(tmp_path: Path) -> None:

@@ -98,13 +98,6 @@ def with_lights(tree: dict[str, Any]) -> None:
     tree["scenes"][0]["nodes"] += [first, first + 1, first + 2, first + 3]
 
 
-@pytest.fixture
-def packs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("SAILENV_PACKS", str(tmp_path / "pack"))
-    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    return tmp_path / "pack"
-
-
 def test_nodes_become_objects(tmp_path: Path, packs: Path) -> None:
     """Where the file has them: (x, y, z) there is (z, x, y) here; equal ones share a model."""
     (tmp_path / "room.glb").write_bytes(scene_bytes())

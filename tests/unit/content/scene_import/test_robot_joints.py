@@ -78,14 +78,6 @@ def arm() -> str:
     return ARM.format(links="".join(LINK.format(name=n) for n in ("upper", "fore", "tip", "nail")))
 
 
-@pytest.fixture
-def packs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder for imported models."""
-    monkeypatch.setenv("SAILENV_PACKS", str(tmp_path / "pack"))
-    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    return tmp_path / "pack"
-
-
 def imported(text: str, name: str, tmp_path: Path, packs: Path) -> tuple[Path, tuple[str, ...]]:
     """Import a file; return the scene's path and the notes."""
     (tmp_path / name).write_text(text, encoding="utf-8")

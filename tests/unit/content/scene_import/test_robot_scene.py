@@ -60,13 +60,6 @@ CABINET = """
 """
 
 
-@pytest.fixture
-def packs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("SAILENV_PACKS", str(tmp_path / "pack"))
-    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    return tmp_path / "pack"
-
-
 def test_bodies_of_mjcf_become_objects(tmp_path: Path, packs: Path) -> None:
     """In their poses; free ones fall, the others are held, and joints are noted."""
     (tmp_path / "kitchen.xml").write_text(KITCHEN, encoding="utf-8")

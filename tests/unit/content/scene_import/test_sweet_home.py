@@ -24,14 +24,6 @@ from sailenv_ros.errors import AssetError, InvalidRequest, SailenvError
 from tests.support.home_files import CUBE, FLAT, write_home
 
 
-@pytest.fixture
-def packs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    folder = tmp_path / "pack"
-    monkeypatch.setenv("SAILENV_PACKS", str(folder))
-    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path / "cache"))
-    return folder
-
-
 def entries(scene: Path) -> dict[str, dict[str, object]]:
     data = yaml.safe_load(scene.read_text(encoding="utf-8"))
     return {entry["name"]: entry for entry in data["objects"]}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -26,11 +25,7 @@ from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.geometry import look_at
 
-SCENE = """
-version: 1
-settled: false
-lights: [{name: sun, type: directional, direction: [1, 0.2, -1], intensity: 2}]
-objects:
+THINGS = """\
   - {name: red cup, asset: cube, category: cup, static: true, scale: 0.3, position: [2, 1, 0.15],
      materials: [{colour: "#c41e1e"}]}
   - {name: blue cup, asset: cube, category: cup, static: true, scale: 0.3, position: [2, 0.5, 0.15],
@@ -42,6 +37,13 @@ objects:
   - {name: second, asset: cube, category: book, static: true, scale: 0.3, position: [2, -1, 0.15],
      materials: [{colour: "#28803a"}]}
 """
+EYE = AgentSpec(
+    name="eye",
+    intrinsics=CameraIntrinsics(width=320, height=240, vertical_fov_deg=60.0),
+    views=("rgb", "instance", "albedo"),
+    following=False,
+    pose=look_at((0.0, 0.0, 0.9), (2.0, 0.0, 0.1)),
+)
 
 CLEAR = {
     "red": (200, 30, 30), "orange": (240, 140, 30), "yellow": (240, 220, 40),
@@ -57,18 +59,8 @@ def word(srgb: tuple[int, int, int]) -> str:
 
 
 @pytest.fixture(scope="module")
-def frame(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Frame]:
-    path = tmp_path_factory.mktemp("colours") / "cups.yaml"
-    path.write_text(SCENE)
-    eye = AgentSpec(
-        name="eye",
-        intrinsics=CameraIntrinsics(width=320, height=240, vertical_fov_deg=60.0),
-        views=("rgb", "instance", "albedo"),
-        following=False,
-        pose=look_at((0.0, 0.0, 0.9), (2.0, 0.0, 0.1)),
-    )
-    with Simulation(path, mode="lockstep", agent=eye) as simulation:
-        yield simulation.capture(agent="eye")
+def frame(simulation: Simulation) -> Frame:
+    return simulation.capture(agent="eye")
 
 
 def test_clear_cases_have_their_word_and_others_none() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -30,11 +29,7 @@ from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
 
-SCENE = """
-version: 1
-settled: false
-lights: [{name: sun, type: directional, direction: [1, 0.2, -1], intensity: 2}]
-objects:
+THINGS = """\
   - {name: ground, asset: plane, category: floor, static: true}
   - {name: shelves, asset: "bookcase~tall:7", static: true, position: [3, -1.4, 0],
      rotation: [0, 0, 180]}
@@ -47,21 +42,13 @@ objects:
   - {name: plinth, asset: cube, category: stool, scale: 0.3, static: true,
      position: [2, 0.353, 0.15]}
 """
-
-
-@pytest.fixture(scope="module")
-def simulation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulation]:
-    path = tmp_path_factory.mktemp("facts") / "things.yaml"
-    path.write_text(SCENE)
-    eye = AgentSpec(
-        name="eye",
-        intrinsics=CameraIntrinsics(width=320, height=240, vertical_fov_deg=75.0),
-        views=("rgb", "instance"),
-        following=False,
-        pose=look_at((0.0, 0.0, 1.4), (3.0, 0.0, 0.8)),
-    )
-    with Simulation(path, mode="lockstep", agent=eye) as simulation:
-        yield simulation
+EYE = AgentSpec(
+    name="eye",
+    intrinsics=CameraIntrinsics(width=320, height=240, vertical_fov_deg=75.0),
+    views=("rgb", "instance"),
+    following=False,
+    pose=look_at((0.0, 0.0, 1.4), (3.0, 0.0, 0.8)),
+)
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -28,11 +27,7 @@ from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
 
-SCENE = """
-version: 1
-settled: false
-lights: [{name: sun, type: directional, direction: [1, 0.2, -1], intensity: 2}]
-objects:
+THINGS = """\
   - {name: ground, asset: plane, category: floor, static: true}
   - {name: desk, asset: cube, category: desk, static: true, scale: [0.8, 1.6, 0.7],
      position: [3, 0, 0.35]}
@@ -51,21 +46,13 @@ objects:
   - {name: speck 2, asset: cube, category: pen, static: true, scale: 0.1,
      position: [2.8, 0.2, 0.752]}
 """
-
-
-@pytest.fixture(scope="module")
-def simulation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulation]:
-    path = tmp_path_factory.mktemp("language") / "things.yaml"
-    path.write_text(SCENE)
-    eye = AgentSpec(
-        name="eye",
-        intrinsics=CameraIntrinsics(width=320, height=240, vertical_fov_deg=60.0),
-        views=("rgb", "instance"),
-        following=False,
-        pose=look_at((0.0, 0.0, 1.6), (3.0, 0.0, 0.6)),
-    )
-    with Simulation(path, mode="lockstep", agent=eye) as simulation:
-        yield simulation
+EYE = AgentSpec(
+    name="eye",
+    intrinsics=CameraIntrinsics(width=320, height=240, vertical_fov_deg=60.0),
+    views=("rgb", "instance"),
+    following=False,
+    pose=look_at((0.0, 0.0, 1.6), (3.0, 0.0, 0.6)),
+)
 
 
 @pytest.fixture(scope="module")
