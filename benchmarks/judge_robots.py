@@ -78,15 +78,7 @@ def simulation(folder: Path) -> SynchronousSimulation:
     """Return an empty scene."""
     path = folder / "empty.yaml"
     path.write_text(EMPTY, encoding="utf-8")
-    return SynchronousSimulation(
-        SceneLibrary(),
-        path,
-        NativeRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    return SynchronousSimulation(SceneLibrary(), path, NativeRenderer())
 
 
 def kinematics(core: SynchronousSimulation, file: str) -> float:

@@ -20,6 +20,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from sailenv_bench.experiments.worker import cpu_s
 from sailenv_bench.suite.measurement import Measurement
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.recording.frames import RecordedFrames
@@ -153,9 +154,9 @@ def _node(folder: Path, args: argparse.Namespace, compression: str) -> None:
     drain = threading.Thread(target=lambda: lines.extend(recorder.stderr or ()), daemon=True)
     drain.start()
     publisher = [sys.executable, __file__, "--publish", str(args.frames), "--scene", args.scene]
-    before, began = _cpu_s(recorder.pid), time.perf_counter()
+    before, began = cpu_s(recorder.pid), time.perf_counter()
     told = subprocess.run(publisher, check=True, capture_output=True, text=True).stdout.strip()
-    cpu = _cpu_s(recorder.pid) - before
+    cpu = cpu_s(recorder.pid) - before
     recorder.send_signal(signal.SIGINT)
     status = recorder.wait(60.0)
     drain.join(5.0)
@@ -204,11 +205,6 @@ def _publish(scene: str, count: int) -> None:
     time.sleep(1.0)
     print(f"published {count} frames, {count / seconds:.1f} fps")
     rclpy.shutdown()
-
-
-def _cpu_s(pid: int) -> float:
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _disk_speed(folder: Path) -> float:

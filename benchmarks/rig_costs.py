@@ -38,15 +38,7 @@ def main() -> None:
         "left": RigCamera(intrinsics=lens),
         "right": RigCamera(intrinsics=lens, extrinsics=right),
     }
-    core = SynchronousSimulation(
-        SceneLibrary(drafts=False),
-        arguments.scene,
-        NativeRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    core = SynchronousSimulation(SceneLibrary(drafts=False), arguments.scene, NativeRenderer())
     compared = {"one": {"left": cameras["left"]}, "two": cameras}
     for name, mounted in compared.items():
         core.register_agent(

@@ -69,15 +69,7 @@ def main() -> None:
         "left": RigCamera(intrinsics=lens, views=views),
         "right": RigCamera(intrinsics=lens, extrinsics=right, views=views),
     }
-    core = SynchronousSimulation(
-        SceneLibrary(drafts=False),
-        arguments.scene,
-        NativeRenderer(),
-        mode="lockstep",
-        real_time_factor=1.0,
-        seed=0,
-        paused=False,
-    )
+    core = SynchronousSimulation(SceneLibrary(drafts=False), arguments.scene, NativeRenderer())
     core.register_agent(AgentSpec(name="rig", following=False, cameras=cameras))
     errors: dict[str, list[Any]] = {name: [] for name in matchers}
     unseen: dict[str, list[Any]] = {name: [] for name in matchers}

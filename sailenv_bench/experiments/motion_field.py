@@ -158,23 +158,24 @@ def _depth(box: BoxSolid, pose: Pose, camera: Camera, rays: Array) -> Array:
     return np.where((enters <= leaves) & (enters > camera.intrinsics.near_m), enters, np.inf)
 
 
-def _displacement(points: Array, index: int, now: Instant, then: Instant) -> Array:
-    """Return (N, 3) from the present to the other place of points of a box, optical axes [m]."""
+def _places(points: Array, index: int, now: Instant, then: Instant) -> tuple[Array, Array]:
+    """Return where points (N, 3) of a box, present optical frame, are in the world, and were."""
     world_from_camera = now.camera.world_from_camera
     world = points @ world_from_camera[:3, :3].T + world_from_camera[:3, 3]
     present, past = now.poses[index].matrix(), then.poses[index].matrix()
     body = (world - present[:3, 3]) @ present[:3, :3]
-    other = body @ past[:3, :3].T + past[:3, 3]
-    moved: Array = (other - world) @ world_from_camera[:3, :3]
+    return world, body @ past[:3, :3].T + past[:3, 3]
+
+
+def _displacement(points: Array, index: int, now: Instant, then: Instant) -> Array:
+    """Return (N, 3) from the present to the other place of points of a box, optical axes [m]."""
+    world, other = _places(points, index, now, then)
+    moved: Array = (other - world) @ now.camera.world_from_camera[:3, :3]
     return moved
 
 
 def _carried(points: Array, index: int, now: Instant, then: Instant) -> Array:
     """Carry points (N, 3) of the present optical frame with a box into the earlier one."""
-    world_from_camera = now.camera.world_from_camera
-    world = points @ world_from_camera[:3, :3].T + world_from_camera[:3, 3]
-    present, past = now.poses[index].matrix(), then.poses[index].matrix()
-    body = (world - present[:3, 3]) @ present[:3, :3]
-    world = body @ past[:3, :3].T + past[:3, 3]
+    _, world = _places(points, index, now, then)
     camera_from_world = then.camera.camera_from_world
     return world @ camera_from_world[:3, :3].T + camera_from_world[:3, 3]

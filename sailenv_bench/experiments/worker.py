@@ -134,7 +134,7 @@ def _measured(workload: Workload, frames: int) -> dict[str, Any]:
     """
     pids = (os.getpid(), *workload.pids)
     physics, frame, stages = [], [], []
-    before = sum(map(_cpu_s, pids))
+    before = sum(map(cpu_s, pids))
     for _ in range(frames):
         began = time.perf_counter()
         workload.step()
@@ -146,13 +146,13 @@ def _measured(workload: Workload, frames: int) -> dict[str, Any]:
         "physics": physics,
         "frame": frame,
         "stages": stages,
-        "cpu_s": sum(map(_cpu_s, pids)) - before,
+        "cpu_s": sum(map(cpu_s, pids)) - before,
         "memory_mib": sum(map(_resident_mib, pids)),
         "repeated": workload.repeated,
     }
 
 
-def _cpu_s(pid: int) -> float:
+def cpu_s(pid: int) -> float:
     """Return the processor time that a process has used, all threads, user and system [s]."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

@@ -10,9 +10,10 @@ from collections.abc import Iterable
 from itertools import pairwise
 
 from sailenv_content.families.builder import PieceBuilder
+from sailenv_content.families.contents import plates, stores
 from sailenv_content.families.fronts import CLEARANCE_M, FrontKind, door, drawer
 from sailenv_content.families.hollow import Box
-from sailenv_content.families.joinery import carcass, four_legs
+from sailenv_content.families.joinery import carcass, four_legs, shelf
 from sailenv_content.families.materials import WOODS, PieceMaterial, metal, paint, wood
 from sailenv_content.families.parameters import Choice, Values
 from sailenv_ros.types.joints import SoftClose
@@ -26,6 +27,7 @@ __all__ = [
     "cabinet_drawer",
     "divided",
     "outer_doors",
+    "stocked",
     "unit",
 ]
 
@@ -150,3 +152,11 @@ def divided(
             (inside.middle[0] - setback / 2, y, inside.middle[2]),
         )
     return rooms
+
+
+def stocked(b: PieceBuilder, material: PieceMaterial, room: Box, *, setback: float) -> None:
+    """Put a shelf into a room, plates on it and stores below it."""
+    z = float(room.middle[2])
+    shelf(b, material, room, z, setback=setback)
+    plates(b, Box((room.low[0], room.low[1], z), room.high))
+    stores(b, Box(room.low, (room.high[0], room.high[1], z - 0.02)))

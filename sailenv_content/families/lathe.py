@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from sailenv_content.families.shaping import Floats, turned
+from sailenv_content.families.shaping import Floats, along_the_axis, turned
 from sailenv_content.procedural.forms import circle, loft
-from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
 from sailenv_ros.types.model import Mesh
 
 __all__ = ["closed_ring", "scaled", "sleeve", "smooth_profile", "vessel"]
@@ -85,13 +84,7 @@ def closed_ring(
     rings = np.empty((len(profile), segments, 3))
     rings[..., :2] = profile[:, None, :1] * circle(segments)
     rings[..., 2] = profile[:, 1:]
-    raw = loft(rings, caps=False)
-    around = 2.0 * np.pi * float(rows[:, 0].max())
-    length = float(np.linalg.norm(np.diff(profile, axis=0), axis=1).sum())
-    uvs = raw.uvs[:, ::-1] * (length / tile_m, around / tile_m)
-    return smooth_mesh(
-        RawMesh(positions=raw.positions, uvs=uvs, triangles=raw.triangles), crease_deg
-    )
+    return along_the_axis(loft(rings, caps=False), profile, tile_m, crease_deg)
 
 
 def scaled(mesh: Mesh, factors: ArrayLike) -> Mesh:

@@ -9,10 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 
-import numpy as np
-
+from sailenv_content.procedural.shapes import colour_of
 from sailenv_content.standard.patterns import PATTERNS, pattern_maps
-from sailenv_ros.types.colour import linear_from_srgb
 from sailenv_ros.types.model import Material, Texture
 
 __all__ = [
@@ -76,13 +74,6 @@ _METALS: dict[str, tuple[str, float]] = {
     "bronze": ("#7d6242", 0.34),
     "alu": ("#c4c6c8", 0.38),
 }
-
-
-def colour_of(text: str) -> Vector3:
-    """Return the linear colour of ``#rrggbb``."""
-    srgb = np.frombuffer(bytes.fromhex(text[1:]), np.uint8) / 255.0
-    red, green, blue = (float(value) for value in linear_from_srgb(srgb))
-    return red, green, blue
 
 
 def _patterned(

@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sailenv_content.procedural.forms import lathe, loft, slab, tube
-from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
+from sailenv_ros.assets.meshes import RawMesh, packed, smooth_mesh
 from sailenv_ros.types.model import Mesh
 
 __all__ = [
     "Floats",
+    "along_the_axis",
     "board",
     "cushion",
     "extruded",
@@ -129,7 +130,7 @@ def board(
     share = points[:, 2] / size[2] + 0.5
     points[:, :2] *= 1.0 + (np.asarray(top) - 1.0) * share[:, None]
     points[:, :2] += np.asarray(lean) * (share[:, None] - 0.5)
-    return _mesh(points, normals, uvs, triangles)
+    return packed(points, normals, uvs, triangles)
 
 
 @lru_cache(maxsize=8)
@@ -203,7 +204,7 @@ def cushion(
     for f in range(6):
         mine, rest = faces == f, [k for k in range(3) if k != f // 2]
         uvs[mine] = points[mine][:, rest] / tile_m
-    return _mesh(points, normals, uvs, triangles)
+    return packed(points, normals, uvs, triangles)
 
 
 def _shared_normals(points: Floats, triangles: NDArray[np.int64]) -> Floats:
@@ -224,10 +225,13 @@ def turned(
 ) -> Mesh:
     """Return what a lathe makes of rows of radius and height [m], from the base up."""
     outline = np.asarray(profile, np.float64)
-    raw = lathe(outline, segments)
+    return along_the_axis(lathe(outline, segments), outline, tile_m, crease_deg)
+
+
+def along_the_axis(raw: RawMesh, outline: Floats, tile_m: float, crease_deg: float) -> Mesh:
+    """Return what rows of radius and height [m] make as they turn, its fibres along the axis."""
     around = 2.0 * np.pi * float(outline[:, 0].max())
     length = float(np.linalg.norm(np.diff(outline, axis=0), axis=1).sum())
-    # Fibres run along the axis.
     uvs = raw.uvs[:, ::-1] * (length / tile_m, around / tile_m)
     return smooth_mesh(
         RawMesh(positions=raw.positions, uvs=uvs, triangles=raw.triangles), crease_deg
@@ -333,13 +337,4 @@ def with_uvs(mesh: Mesh, axes: tuple[int, int], low: ArrayLike, size: ArrayLike)
         normals=mesh.normals,
         uvs=places.astype(np.float32),
         triangles=mesh.triangles,
-    )
-
-
-def _mesh(points: Floats, normals: Floats, uvs: Floats, triangles: NDArray[np.int64]) -> Mesh:
-    return Mesh(
-        positions=points.astype(np.float32),
-        normals=normals.astype(np.float32),
-        uvs=uvs.astype(np.float32),
-        triangles=triangles.astype(np.uint32),
     )

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from sailenv_content.standard.patterns import normals_of
 from sailenv_ros.types.colour import linear_from_hex, srgb_from_linear
 from sailenv_ros.types.model import Material
 
@@ -47,7 +48,7 @@ def cloth(
         roughness=0.92,
         base_colour=(1.0, 1.0, 1.0, 1.0),
         base_colour_texture=_encoded(picture),
-        normal_texture=_normals(height, 0.9),
+        normal_texture=normals_of(height, 0.9),
         double_sided=True,
     )
 
@@ -77,7 +78,7 @@ def strands(colour: str, curls: float) -> Material:
         roughness=0.55,
         base_colour=(1.0, 1.0, 1.0, 1.0),
         base_colour_texture=_encoded(np.clip(picture, 0.0, 1.0)),
-        normal_texture=_normals(height, 1.3),
+        normal_texture=normals_of(height, 1.3),
         double_sided=True,
     )
 
@@ -125,17 +126,5 @@ def _scaled(field: Doubles) -> Doubles:
 def _encoded(linear: Doubles) -> Texture:
     pixels = np.full((*linear.shape[:2], 4), 255, np.uint8)
     pixels[..., :3] = np.rint(255.0 * srgb_from_linear(np.clip(linear, 0.0, 1.0)))
-    pixels.flags.writeable = False
-    return pixels
-
-
-def _normals(height: Doubles, relief: float) -> Texture:
-    right = (np.roll(height, -1, axis=1) - np.roll(height, 1, axis=1)) * 8.0 * relief
-    # Rows run downwards and v upwards.
-    up = (np.roll(height, 1, axis=0) - np.roll(height, -1, axis=0)) * 8.0 * relief
-    normal = np.dstack([-right, -up, np.ones_like(height)])
-    normal /= np.linalg.norm(normal, axis=2, keepdims=True)
-    pixels = np.full((*height.shape, 4), 255, np.uint8)
-    pixels[..., :3] = np.rint(127.5 * normal + 127.5)
     pixels.flags.writeable = False
     return pixels

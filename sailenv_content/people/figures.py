@@ -84,17 +84,20 @@ def _height_targets(build: Build) -> Iterator[tuple[str, float]]:
 def _kinds(build: Build) -> Iterator[tuple[str, float]]:
     muscles = _between(build.muscle, (0.0, 0.5, 1.0), ("minmuscle", "averagemuscle", "maxmuscle"))
     weights = _between(build.weight, (0.0, 0.5, 1.0), ("minweight", "averageweight", "maxweight"))
-    genders = {"male": 1.0 - build.female, "female": build.female}
-    ages = _between(build.age_years, _AGE_YEARS, _AGES)
+    genders, ages = _genders_and_ages(build)
     for gender, age, muscle, weight in product(genders, ages, muscles, weights):
         share = genders[gender] * ages[age] * muscles[muscle] * weights[weight]
         yield f"{gender}-{age}-{muscle}-{weight}", share
 
 
+def _genders_and_ages(build: Build) -> tuple[Shares, Shares]:
+    genders = {"male": 1.0 - build.female, "female": build.female}
+    return genders, _between(build.age_years, _AGE_YEARS, _AGES)
+
+
 def _targets(build: Build) -> Iterator[tuple[str, float]]:
     """Yield the targets of the smallest body, and their shares."""
-    genders = {"male": 1.0 - build.female, "female": build.female}
-    ages = _between(build.age_years, _AGE_YEARS, _AGES)
+    genders, ages = _genders_and_ages(build)
     whole = build.african + build.asian + build.caucasian
     races = {
         "african": build.african / whole,

@@ -59,9 +59,15 @@ def painted_part(
     name: str, mesh: RawMesh, colour: str, *, roughness: float = 0.5, **more: object
 ) -> RawPart:
     """Return a mesh of one colour, ``#rrggbb``; words of its name choose a finish."""
-    srgb = np.frombuffer(bytes.fromhex(colour[1:]), np.uint8) / 255.0
+    base_colour = (*colour_of(colour), 1.0)
+    return part(name, mesh, base_colour=base_colour, roughness=roughness, **more)
+
+
+def colour_of(text: str) -> tuple[float, float, float]:
+    """Return the linear colour of ``#rrggbb``."""
+    srgb = np.frombuffer(bytes.fromhex(text[1:]), np.uint8) / 255.0
     red, green, blue = (float(value) for value in linear_from_srgb(srgb))
-    return part(name, mesh, base_colour=(red, green, blue, 1.0), roughness=roughness, **more)
+    return red, green, blue
 
 
 def printed_part(name: str, mesh: RawMesh, print_: Texture, *, roughness: float = 0.8) -> RawPart:

@@ -14,8 +14,8 @@ from sailenv_content.scene_import.robot_scene import import_robot_scene
 from sailenv_content.scene_import.sweet_home import import_sweet_home
 from sailenv_content.scene_import.usd_scene import import_usd
 from sailenv_content.scene_import.writing import write_scene
-from sailenv_ros.assets.archives import MAX_ARCHIVE_BYTES
 from sailenv_ros.assets.folders import standard_pack_folder
+from sailenv_ros.assets.importing import check_file
 from sailenv_ros.assets.pack import PACK_FILE, AssetPack, PackEntry
 from sailenv_ros.errors import AssetError, InvalidRequest
 from sailenv_ros.scene.scene_catalogue import SUFFIXES
@@ -98,10 +98,7 @@ def import_scene(
         raise InvalidRequest("kind of file", path.name, f"one of: {', '.join(_IMPORTERS)}")
     if file.suffix not in SUFFIXES:
         raise InvalidRequest("name of the scene file", file.name, f"one that ends in {SUFFIXES[0]}")
-    if not path.is_file():
-        raise AssetError(path.name, f"there is no such file ({path})")
-    if path.stat().st_size > MAX_ARCHIVE_BYTES:
-        raise AssetError(path.name, f"it is larger than {MAX_ARCHIVE_BYTES // 2**20} MB")
+    check_file(path)
     ours: Mapping[str, PackEntry] = {}
     if not own_models and (standard_pack_folder() / PACK_FILE).is_file():
         ours = AssetPack(standard_pack_folder()).entries

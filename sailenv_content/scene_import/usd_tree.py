@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_content.scene_import.usd_meshes import Corners
-from sailenv_ros.assets.gltf_description import glb_with
+from sailenv_ros.assets.gltf_description import appended, glb_with
 
 __all__ = ["GltfTree"]
 
@@ -30,9 +30,7 @@ class GltfTree:
 
     def append(self, key: str, entry: Mapping[str, Any]) -> int:
         """Add an entry; return its number."""
-        entries: list[Mapping[str, Any]] = self._tree.setdefault(key, [])
-        entries.append(entry)
-        return len(entries) - 1
+        return appended(self._tree, key, entry)
 
     def bytes_of(self, data: bytes) -> int:
         """Add bytes; return the number of their view."""

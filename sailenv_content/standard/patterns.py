@@ -17,7 +17,13 @@ from numpy.typing import NDArray
 from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
 from sailenv_ros.types.model import Texture
 
-__all__ = ["PATTERNS", "Pattern", "PatternTextures", "pattern_maps"]
+__all__ = [
+    "PATTERNS",
+    "Pattern",
+    "PatternTextures",
+    "normals_of",
+    "pattern_maps",
+]
 
 EDGE_PX = 256
 GRAIN_PX = 1024
@@ -91,13 +97,13 @@ def _drawn(pattern: Pattern) -> Arrays:
     pixels[..., :3] = np.rint(255.0 * np.clip(bright, 0.0, 1.0))[..., None]
     maps = {"base_colour_texture": pixels}
     if pattern.relief:
-        maps["normal_texture"] = _normals(height, pattern.relief)
+        maps["normal_texture"] = normals_of(height, pattern.relief)
     for texture in maps.values():
         texture.flags.writeable = False
     return maps
 
 
-def _normals(height: Field, relief: float) -> Texture:
+def normals_of(height: Field, relief: float) -> Texture:
     """Return the tangent-space normals of a height field that wraps around."""
     right = (np.roll(height, -1, axis=1) - np.roll(height, 1, axis=1)) * 0.5 * relief * 16.0
     # Rows run downwards and v upwards.
@@ -106,6 +112,7 @@ def _normals(height: Field, relief: float) -> Texture:
     normal /= np.linalg.norm(normal, axis=2, keepdims=True)
     pixels = np.full((*height.shape, 4), 255, np.uint8)
     pixels[..., :3] = np.rint(127.5 * normal + 127.5)
+    pixels.flags.writeable = False
     return pixels
 
 

@@ -25,6 +25,7 @@ from sailenv_content.standard.finishing import finished
 from sailenv_content.standard.patterns import PATTERNS
 from sailenv_ros.assets.finishes import FINISHES, finish_of
 from sailenv_ros.assets.hulls import convex_hull, convex_parts, hulls_of_pieces, merged
+from sailenv_ros.assets.importing import bounds_of
 from sailenv_ros.assets.meshes import (
     RawMesh,
     box_uvs,
@@ -140,16 +141,11 @@ def _from_catalogue(listed: CatalogueEntry, catalogues: Catalogues) -> list[RawP
     swap = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     turn = swap @ listed.turn @ swap.T
     parts = tuple(_mapped(part, turn, np.zeros(3)) for part in parts)
-    low, high = _bounds(parts)
+    low, high = bounds_of(parts)
     size = np.where(high - low > 1e-9, high - low, 1.0)
     scale = np.diag(np.asarray(listed.size_m) / size)
     base = np.array([*(low[:2] + high[:2]) / 2.0, low[2]])
     return [_mapped(part, scale, -scale @ base) for part in parts]
-
-
-def _bounds(parts: Sequence[RawPart]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    points = np.concatenate([p.mesh.positions[np.unique(p.mesh.triangles)] for p in parts])
-    return points.min(axis=0), points.max(axis=0)
 
 
 def _mapped(part: RawPart, linear_map: NDArray[np.float64], shift: NDArray[np.float64]) -> RawPart:
@@ -165,7 +161,7 @@ def _mapped(part: RawPart, linear_map: NDArray[np.float64], shift: NDArray[np.fl
 
 def enough_triangles(parts: Sequence[RawPart]) -> int:
     """Return how many triangles an object of that size needs."""
-    low, high = _bounds(parts)
+    low, high = bounds_of(parts)
     return int(TRIANGLES_AT_ONE_METRE * float(np.linalg.norm(high - low)) ** TRIANGLES_EXPONENT)
 
 

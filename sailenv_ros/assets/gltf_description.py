@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from sailenv_ros.errors import AssetError
 
-__all__ = ["GLB_HEAD_BYTES", "Description", "description_of", "glb_with"]
+__all__ = ["GLB_HEAD_BYTES", "Description", "appended", "description_of", "glb_with"]
 
 Description = dict[str, Any]
 
@@ -55,6 +56,13 @@ def description_of(path: Path) -> tuple[Description, bytes]:
     if not isinstance(tree, dict):
         raise AssetError(path.name, "its description is no JSON object")
     return tree, rest
+
+
+def appended(tree: Description, key: str, entry: Mapping[str, Any]) -> int:
+    """Add an entry to a list of a description; return its number."""
+    entries: list[Mapping[str, Any]] = tree.setdefault(key, [])
+    entries.append(entry)
+    return len(entries) - 1
 
 
 def glb_with(tree: Description, rest: bytes) -> bytes:

@@ -72,10 +72,7 @@ def import_asset(
         raise InvalidRequest("asset name", name, "lower-case letters, digits and _, at most 63")
     if height_m is not None and not SMALLEST_M <= height_m <= LARGEST_M:
         raise InvalidRequest("height_m", height_m, f"a length from {SMALLEST_M} to {LARGEST_M} [m]")
-    if not path.is_file():
-        raise AssetError(path.name, f"there is no such file ({path})")
-    if path.stat().st_size > MAX_ARCHIVE_BYTES:
-        raise AssetError(path.name, f"it is larger than {MAX_ARCHIVE_BYTES // 2**20} MB")
+    check_file(path)
     with tempfile.TemporaryDirectory(prefix="sailenv-") as folder:
         file = _model_file(path, Path(folder))
         if file.suffix.lower() in (".glb", ".gltf"):
@@ -96,6 +93,19 @@ def import_asset(
     )
 
 
+def check_file(path: Path) -> None:
+    """Refuse a file that is not there, or is larger than archives may be.
+
+    Raises
+    ------
+    AssetError
+    """
+    if not path.is_file():
+        raise AssetError(path.name, f"there is no such file ({path})")
+    if path.stat().st_size > MAX_ARCHIVE_BYTES:
+        raise AssetError(path.name, f"it is larger than {MAX_ARCHIVE_BYTES // 2**20} MB")
+
+
 def _model_file(path: Path, folder: Path) -> Path:
     if path.suffix.lower() != ".zip":
         return path
@@ -109,7 +119,7 @@ def _model_file(path: Path, folder: Path) -> Path:
 
 def _standing(parts: Sequence[RawPart], part: RawPart, height_m: float | None) -> RawMesh:
     """Return a part's mesh in metres, the whole model's base centred on the origin."""
-    low, high = _bounds(parts)
+    low, high = bounds_of(parts)
     size = high - low
     if not size.max() > 0.0:
         raise AssetError(part.name, "the model has no extent")
@@ -130,7 +140,8 @@ def _standing(parts: Sequence[RawPart], part: RawPart, height_m: float | None) -
     )
 
 
-def _bounds(parts: Sequence[RawPart]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def bounds_of(parts: Sequence[RawPart]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the lowest and the highest corner of what triangles of some parts use."""
     points = np.concatenate([p.mesh.positions[np.unique(p.mesh.triangles)] for p in parts])
     return points.min(axis=0), points.max(axis=0)
 

@@ -19,6 +19,7 @@ __all__ = [
     "components",
     "is_open",
     "outward",
+    "packed",
     "simplified",
     "smooth_mesh",
     "thinned_out",
@@ -54,6 +55,16 @@ class RawMesh:
     uvs: Floats
     triangles: Indices
     normals: Floats | None = None
+
+
+def packed(positions: Floats, normals: Floats, uvs: Floats, triangles: Indices) -> Mesh:
+    """Return a mesh of arrays of any precision."""
+    return Mesh(
+        positions=positions.astype(np.float32),
+        normals=normals.astype(np.float32),
+        uvs=uvs.astype(np.float32),
+        triangles=triangles.astype(np.uint32),
+    )
 
 
 def smooth_mesh(raw: RawMesh, crease_deg: float = CREASE_DEG) -> Mesh:

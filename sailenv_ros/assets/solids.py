@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.assets.meshes import packed
 from sailenv_ros.types.model import Mesh
 
 __all__ = ["box_mesh", "cone_mesh", "cylinder_mesh", "ground_mesh", "sphere_mesh"]
@@ -71,7 +72,7 @@ def sphere_mesh(radius_m: float, segments: int = SEGMENTS) -> Mesh:
     triangles = _grid_triangles(rings, segments)
     # At the poles one triangle of each grid square has no area.
     triangles = triangles[_areas(flat, triangles) > 1e-9]
-    return _mesh(flat * radius_m, flat, uvs.reshape(-1, 2), triangles)
+    return packed(flat * radius_m, flat, uvs.reshape(-1, 2), triangles)
 
 
 def cylinder_mesh(radius_m: float, height_m: float, segments: int = SEGMENTS) -> Mesh:
@@ -106,7 +107,7 @@ def _quad(corners: Floats, normal: Floats) -> Mesh:
     """Make a flat square of four corners, counter-clockwise from the lower left."""
     uvs = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     triangles = np.array([[0, 1, 2], [0, 2, 3]])
-    return _mesh(corners, np.tile(normal, (4, 1)), uvs, triangles)
+    return packed(corners, np.tile(normal, (4, 1)), uvs, triangles)
 
 
 def _mantle(low_m: float, high_m: float, low_z: float, high_z: float, segments: int) -> Mesh:
@@ -131,7 +132,7 @@ def _mantle(low_m: float, high_m: float, low_z: float, high_z: float, segments: 
     positions = np.concatenate([low, high])
     triangles = _grid_triangles(1, segments)
     triangles = triangles[_areas(positions, triangles) > 1e-12]
-    return _mesh(positions, np.concatenate([low_normals, high_normals]), uvs, triangles)
+    return packed(positions, np.concatenate([low_normals, high_normals]), uvs, triangles)
 
 
 def _cap(radius_m: float, z_m: float, facing: float, segments: int) -> Mesh:
@@ -144,7 +145,7 @@ def _cap(radius_m: float, z_m: float, facing: float, segments: int) -> Mesh:
     first = np.arange(segments) + 1
     second = np.roll(first, -1)
     ends = (first, second) if facing > 0 else (second, first)
-    return _mesh(positions, normals, uvs, np.column_stack([np.zeros_like(first), *ends]))
+    return packed(positions, normals, uvs, np.column_stack([np.zeros_like(first), *ends]))
 
 
 def _circle(turns: Floats) -> Floats:
@@ -168,12 +169,3 @@ def _areas(positions: Floats, triangles: NDArray[np.int64]) -> Floats:
     a, b, c = (positions[triangles[:, corner]] for corner in range(3))
     areas: Floats = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
     return areas
-
-
-def _mesh(positions: Floats, normals: Floats, uvs: Floats, triangles: NDArray[np.int64]) -> Mesh:
-    return Mesh(
-        positions=positions.astype(np.float32),
-        normals=normals.astype(np.float32),
-        uvs=uvs.astype(np.float32),
-        triangles=triangles.astype(np.uint32),
-    )

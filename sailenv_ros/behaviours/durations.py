@@ -5,12 +5,13 @@ Plain data of behaviours and lessons in, seconds and faults out; starts nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pydantic import ValidationError
 
 from sailenv_ros.behaviours.registry import behaviour_kinds
+from sailenv_ros.scene.rules import listed
 from sailenv_ros.types.validation import is_finite_number
 
 __all__ = ["lesson_errors", "moving_time_s", "presence_s"]
@@ -62,10 +63,10 @@ def lesson_errors(scene: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, .
     lessons = scene.get("lessons")
     if not isinstance(lessons, Mapping):
         return
-    sequence = _listed(lessons, "sequence")
+    sequence = listed(lessons, "sequence")
     objects = {
         str(entry.get("name")): entry
-        for entry in _listed(scene, "objects")
+        for entry in listed(scene, "objects")
         if isinstance(entry, Mapping)
     }
     # The one lesson that may go on for ever is the very last.
@@ -75,7 +76,7 @@ def lesson_errors(scene: Mapping[str, Any]) -> Iterator[tuple[tuple[str | int, .
     for number, lesson in enumerate(sequence):
         if not isinstance(lesson, Mapping) or lesson.get("duration") is not None:
             continue
-        scheduled_objects = [str(name) for name in _listed(lesson, "objects")]
+        scheduled_objects = [str(name) for name in listed(lesson, "objects")]
         if not scheduled_objects or any(name not in objects for name in scheduled_objects):
             continue
         times = {name: presence_s(objects[name]) for name in scheduled_objects}
@@ -96,8 +97,3 @@ def presence_s(entry: Mapping[str, Any]) -> float | None:
     if not moving:
         return moving
     return moving + (float(appear) if is_finite_number(appear) else 0.0)
-
-
-def _listed(entry: Mapping[str, Any], key: str) -> Sequence[Any]:
-    values = entry.get(key)
-    return values if isinstance(values, list | tuple) else ()

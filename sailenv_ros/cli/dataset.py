@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from sailenv_ros.dataset import Progress
 
-__all__ = ["add_parser", "run"]
+__all__ = ["add_parser", "run", "told"]
 
 
 def add_parser(subparsers: Any) -> None:
@@ -108,10 +108,10 @@ def _make(args: argparse.Namespace) -> int:
     )
     for name, counts in made.written.items():
         left_out = made.left_out.get(name, {})
-        more = f"; left out: {_counts(left_out)}" if left_out else ""
-        print(f"  {name}: {_counts(counts)}{more}")
+        more = f"; left out: {told(left_out)}" if left_out else ""
+        print(f"  {name}: {told(counts)}{more}")
     if made.skipped:
-        print(f"  clips that could not be made: {_counts(made.skipped)}")
+        print(f"  clips that could not be made: {told(made.skipped)}")
     return 0
 
 
@@ -200,5 +200,6 @@ def _positive(text: str) -> int:
     return number
 
 
-def _counts(counts: Mapping[str, int]) -> str:
-    return ", ".join(f"{count} {what}" for what, count in counts.items()) or "nothing"
+def told(numbers: Mapping[str, int]) -> str:
+    """Return in words how many there are of each thing."""
+    return ", ".join(f"{count} {what}" for what, count in numbers.items()) or "nothing"

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from sailenv_ros.cli.dataset import told
 
 if TYPE_CHECKING:
     from sailenv_ros.dataset.formats import DatasetSummary
@@ -110,13 +111,9 @@ def run(args: argparse.Namespace) -> int:
 def _text_of(summary: DatasetSummary) -> str:
     lines = [f"{summary.frames} frames as {', '.join(summary.formats)}"]
     if summary.splits:
-        lines[0] += f" ({_counts(summary.splits)})"
+        lines[0] += f" ({told(summary.splits)})"
     for name, one in summary.formats.items():
-        lines.append(f"  {name}: {_counts(one.written)}")
+        lines.append(f"  {name}: {told(one.written)}")
         if one.left_out:
-            lines[-1] += f"; left out: {_counts(one.left_out)}"
+            lines[-1] += f"; left out: {told(one.left_out)}"
     return "\n".join(lines)
-
-
-def _counts(counts: Mapping[str, int]) -> str:
-    return ", ".join(f"{count} {what}" for what, count in counts.items()) or "nothing"

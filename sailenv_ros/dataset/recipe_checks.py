@@ -14,7 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from sailenv_ros.dataset.formats.formats import FORMATS, format_class
 from sailenv_ros.dataset.recipe import DatasetRecipe
-from sailenv_ros.dataset.recipe_choices import choices_of
+from sailenv_ros.dataset.recipe_choices import choices_of, mappings_in
 from sailenv_ros.dataset.recipe_scenes import RecipeScenes
 from sailenv_ros.dataset.scene_names import SceneNames
 from sailenv_ros.errors import MissingPackage
@@ -60,7 +60,7 @@ def recipe_errors(
 
 def _pictures(data: Mapping[str, Any], scenes: RecipeScenes) -> Iterator[Diagnostic]:
     """Yield which pictures do not lie beside a scene's file."""
-    for index, entry in _entries(data, "randomise"):
+    for index, entry in mappings_in(data, "randomise"):
         for name in drawn_names(entry.get("picture")):
             for scene, file in scenes.files.items():
                 fault = scenes.library.materials.beside(file.path).picture_fault(name)
@@ -98,8 +98,8 @@ def _annotated(data: Mapping[str, Any], scenes: RecipeScenes) -> Iterator[Diagno
 
 def _drawn_cameras(data: Mapping[str, Any]) -> Iterator[Diagnostic]:
     """Yield which cameras are drawn that the recipe does not have, or at a time when none is."""
-    cameras = [str(entry.get("name", "camera")) for _, entry in _entries(data, "cameras")]
-    for index, entry in _entries(data, "randomise"):
+    cameras = [str(entry.get("name", "camera")) for _, entry in mappings_in(data, "cameras")]
+    for index, entry in mappings_in(data, "randomise"):
         if entry.get("type") != "camera":
             continue
         if entry.get("every", "epoch") == "epoch":
@@ -116,7 +116,7 @@ def _drawn_cameras(data: Mapping[str, Any]) -> Iterator[Diagnostic]:
 
 def _agents(data: Mapping[str, Any], scenes: RecipeScenes) -> Iterator[Diagnostic]:
     """Yield in which scenes the agent of a camera is missing."""
-    for index, entry in _entries(data, "cameras"):
+    for index, entry in mappings_in(data, "cameras"):
         name = entry.get("agent")
         if entry.get("type") != "agent" or not isinstance(name, str):
             continue
@@ -161,7 +161,7 @@ def _choices(data: Mapping[str, Any], scenes: RecipeScenes) -> Iterator[Diagnost
 
 def _added_names(data: Mapping[str, Any], library: SceneLibrary) -> Iterator[SceneNames]:
     """Yield what cameras may look at that comes to a scene at random, once for each asset."""
-    for _, entry in _entries(data, "randomise"):
+    for _, entry in mappings_in(data, "randomise"):
         try:
             thing = _THING.validate_python(entry)
         except ValidationError:
@@ -169,10 +169,3 @@ def _added_names(data: Mapping[str, Any], library: SceneLibrary) -> Iterator[Sce
         names = [f"{thing.name} {number}" for number in range(1, MOST_ADDED + 1)]
         for asset in thing.may_add():
             yield SceneNames({"camera": dict.fromkeys(names, library.knowledge.category_of(asset))})
-
-
-def _entries(data: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
-    listed = data.get(key)
-    for index, entry in enumerate(listed if isinstance(listed, list | tuple) else ()):
-        if isinstance(entry, Mapping):
-            yield index, entry

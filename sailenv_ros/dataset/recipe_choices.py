@@ -69,7 +69,7 @@ class RecipeChoice:
 
 def choices_of(data: Mapping[str, Any]) -> Iterator[RecipeChoice]:
     """Yield the choices of a recipe's plain data, however wrong the rest is."""
-    for index, entry in _mappings(data, "randomise"):
+    for index, entry in mappings_in(data, "randomise"):
         kind = entry.get("type")
         if kind in ("object", "material", "light", "behaviour"):
             given = entry.get("part")
@@ -80,7 +80,7 @@ def choices_of(data: Mapping[str, Any]) -> Iterator[RecipeChoice]:
                     label += f", material {part}"
                 among = "jointed" if kind == "behaviour" and _needs_joint(entry) else kind
                 yield RecipeChoice(("randomise", index, "of"), label, among, (one,), part)
-    for index, entry in _mappings(data, "cameras"):
+    for index, entry in mappings_in(data, "cameras"):
         name = f"camera {entry.get('name', 'camera')}"
         if entry.get("type") == "orbit":
             for one in selectors_in(entry.get("object")):
@@ -153,12 +153,13 @@ def fitting_settings(settings: Mapping[str, Any], names: SceneNames) -> Mapping[
 def _needs_joint(entry: Mapping[str, Any]) -> bool:
     """Return whether a behaviour moves joints alone, as that of doors does."""
     kinds = (
-        behaviour_kinds().get(str(one.get("type"))) for _, one in _mappings(entry, "behaviours")
+        behaviour_kinds().get(str(one.get("type"))) for _, one in mappings_in(entry, "behaviours")
     )
     return any(kind.parameters.model_construct().needs_joint for kind in kinds if kind is not None)
 
 
-def _mappings(data: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
+def mappings_in(data: Mapping[str, Any], key: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
+    """Yield the mappings of a list of some data, with their places in it."""
     listed = data.get(key)
     for index, entry in enumerate(listed if isinstance(listed, list | tuple) else ()):
         if isinstance(entry, Mapping):

@@ -87,7 +87,9 @@ class _Closing:
     def turns(self, share: float) -> list[Doubles]:
         """Return the turns of its joints from the hand, closed by a share."""
         bends = self.opened_deg + share * (self.bends_deg - self.opened_deg)
-        return [about(self.axis, degrees) @ self.opposed for degrees in np.cumsum(bends)]
+        return [
+            about(self.axis, np.radians(degrees)) @ self.opposed for degrees in np.cumsum(bends)
+        ]
 
 
 _known: WeakKeyDictionary[Rig, dict[Grip, dict[int, _Closing]]] = WeakKeyDictionary()
@@ -196,7 +198,7 @@ def _thumb(rig: Rig, grip: Grip) -> _Closing:
         bends = np.cross(way, to_middle - (to_middle @ upwards) * upwards)
         turn, bends = (axis / max(float(np.linalg.norm(axis)), 1e-9) for axis in (turn, bends))
         straight = np.array(_THUMB_BENDS_DEG[0])
-        opened = _Closing(about(turn, angle), bends, straight, straight)
+        opened = _Closing(about(turn, np.radians(angle)), bends, straight, straight)
         away = float(_away(rig, grip, 1, opened).min())
         if away > clear + 1e-6:
             best, clear = opened, away

@@ -89,7 +89,7 @@ def _curls(rig: Rig) -> dict[str, dict[str, Doubles]]:
                 turn = np.eye(3)
                 for joint, curl in enumerate(_CURL_DEG, start=1):
                     degrees = curl * (0.4 if finger == 1 else 0.7 + 0.1 * finger)
-                    turn = turn @ about(axis, degrees)
+                    turn = turn @ about(axis, np.radians(degrees))
                     found[side][f"finger{finger}-{joint}.{side}"] = turn
         _known[rig] = found
     return _known[rig]
@@ -118,9 +118,8 @@ def looking(chest: Doubles, look: Look) -> dict[str, Doubles]:
     return {"neck02": share(0.3), "neck03": share(0.55), "head": share(1.0)}
 
 
-def about(axis: Doubles, degrees: float) -> Doubles:
-    """Return the rotation about a unit axis by an angle [deg]."""
-    angle = np.radians(degrees)
+def about(axis: Doubles, angle: float) -> Doubles:
+    """Return the rotation about a unit axis by an angle [rad]."""
     x, y, z = axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     turn: Doubles = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)

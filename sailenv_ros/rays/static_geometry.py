@@ -14,12 +14,12 @@ from sailenv_ros.rays.model_triangles import ModelTriangles, joined, triangles_o
 from sailenv_ros.types.model import Material, Model
 from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["StaticGeometry", "StaticInstance", "static_geometry_of"]
+__all__ = ["PlacedModel", "StaticGeometry", "StaticInstance", "static_geometry_of"]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
-class StaticInstance:
-    """One object that stands still.
+class PlacedModel:
+    """A model where it stands.
 
     Attributes
     ----------
@@ -28,14 +28,24 @@ class StaticInstance:
     model : Model
     scale : (3,) tuple of float
     world_from_body : (4, 4) float64
-    first_triangle : int
-        Place of its first triangle in the static geometry; its parts' follow in their order.
     """
 
     id: int
     model: Model
     scale: tuple[float, float, float]
     world_from_body: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class StaticInstance(PlacedModel):
+    """One object that stands still.
+
+    Attributes
+    ----------
+    first_triangle : int
+        Place of its first triangle in the static geometry; its parts' follow in their order.
+    """
+
     first_triangle: int
 
 

@@ -237,7 +237,6 @@ class RecordingWriter:
     def _finish_file(self) -> None:
         if self._file.finished:
             return  # and the next one could not be begun
-        topics = {number: name for name, number in self._channels.items()}
         try:
             self._file.add_metadata(self._embedded())
         except RecordingError as problem:
@@ -247,26 +246,24 @@ class RecordingWriter:
         except RecordingError as problem:
             # The files are closed and described all the same; `close` tells of it.
             self._problem = self._problem or problem
+        self._files.append(self._summary())
+        self._closed_bytes += self._file.path.stat().st_size
+
+    def _summary(self) -> FileSummary:
+        """Return what is in the present file."""
+        topics = {number: name for name, number in self._channels.items()}
         start_ns, end_ns = self._file.span_ns()
         counts = {topics[number]: count for number, count in self._file.counts().items()}
-        summary = FileSummary(
+        return FileSummary(
             name=self._file.path.name, start_ns=start_ns, end_ns=end_ns, counts=counts
         )
-        self._files.append(summary)
-        self._closed_bytes += self._file.path.stat().st_size
 
     def _embedded(self) -> Metadata:
         """Return the bag's metadata as rosbag2 puts it into the file, for a file that is alone.
 
         It says what is in this file.
         """
-        topics = {number: name for name, number in self._channels.items()}
-        start_ns, end_ns = self._file.span_ns()
-        counts = {topics[number]: count for number, count in self._file.counts().items()}
-        file = FileSummary(
-            name=self._file.path.name, start_ns=start_ns, end_ns=end_ns, counts=counts
-        )
-        text = metadata_text(self.topics, [file])
+        text = metadata_text(self.topics, [self._summary()])
         return Metadata(name="rosbag2", metadata={"serialized_metadata": text})
 
 

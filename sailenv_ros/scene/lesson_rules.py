@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping
 
 from sailenv_ros.scene.messages import shown, suggestion
-from sailenv_ros.scene.rules import Entry, Faults
+from sailenv_ros.scene.rules import Entry, Faults, listed
 from sailenv_ros.types.validation import is_finite_number
 
 __all__ = [
@@ -35,7 +34,7 @@ def pupils_exist(scene: Entry) -> Faults:
     """Refuse lessons of objects which the scene lacks."""
     names = [
         str(entry["name"])
-        for entry in _listed(scene, "objects")
+        for entry in listed(scene, "objects")
         if isinstance(entry, Mapping) and isinstance(entry.get("name"), str)
     ]
     for place, name in _named(scene):
@@ -47,10 +46,10 @@ def pupils_exist(scene: Entry) -> Faults:
 def stays_its_lesson(scene: Entry) -> Faults:
     """Refuse an object that would appear only when its lesson is over."""
     lessons = scene.get("lessons")
-    sequence = _listed(lessons, "sequence") if isinstance(lessons, Mapping) else ()
+    sequence = listed(lessons, "sequence") if isinstance(lessons, Mapping) else ()
     appears = {
         entry["name"]: entry["appear"]
-        for entry in _listed(scene, "objects")
+        for entry in listed(scene, "objects")
         if isinstance(entry, Mapping)
         and isinstance(entry.get("name"), str)
         and is_finite_number(entry.get("appear"))
@@ -59,7 +58,7 @@ def stays_its_lesson(scene: Entry) -> Faults:
         duration = lesson.get("duration") if isinstance(lesson, Mapping) else None
         if not is_finite_number(duration):
             continue
-        for index, name in enumerate(_listed(lesson, "objects")):
+        for index, name in enumerate(listed(lesson, "objects")):
             if isinstance(name, str) and appears.get(name, 0.0) >= duration:
                 place = ("lessons", "sequence", number, "objects", index)
                 yield (
@@ -71,7 +70,7 @@ def stays_its_lesson(scene: Entry) -> Faults:
 
 def visitors_stand_alone(scene: Entry) -> Faults:
     """Refuse joints of and on what comes and goes."""
-    objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
+    objects = [entry for entry in listed(scene, "objects") if isinstance(entry, Mapping)]
     lessons = scene.get("lessons")
     lesson_objects = {name for _, name in _named(scene)} if isinstance(lessons, Mapping) else set()
     joints = [entry["joint"] for entry in objects if isinstance(entry.get("joint"), Mapping)]
@@ -89,16 +88,11 @@ def visitors_stand_alone(scene: Entry) -> Faults:
 
 def _named(scene: Entry) -> list[tuple[tuple[str | int, ...], str]]:
     lessons = scene.get("lessons")
-    sequence = _listed(lessons, "sequence") if isinstance(lessons, Mapping) else ()
+    sequence = listed(lessons, "sequence") if isinstance(lessons, Mapping) else ()
     return [
         (("lessons", "sequence", number, "objects", index), name)
         for number, lesson in enumerate(sequence)
         if isinstance(lesson, Mapping)
-        for index, name in enumerate(_listed(lesson, "objects"))
+        for index, name in enumerate(listed(lesson, "objects"))
         if isinstance(name, str)
     ]
-
-
-def _listed(entry: Mapping[str, Any], key: str) -> Sequence[Any]:
-    values = entry.get(key)
-    return values if isinstance(values, list | tuple) else ()

@@ -6,10 +6,10 @@ Rules take entries as plain data, of which nothing is certain yet, as those of `
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, TypeAlias
 
 from sailenv_ros.scene.messages import shown
-from sailenv_ros.scene.room_rules import DOOR_SIZE_M, room_part_names
+from sailenv_ros.scene.room_rules import DOOR_SIZE_M, room_part_names, size_of
+from sailenv_ros.scene.rules import Entry, Faults
 from sailenv_ros.types.validation import is_finite_number, shown_number
 
 __all__ = [
@@ -21,8 +21,6 @@ __all__ = [
     "inside_room",
 ]
 
-Faults: TypeAlias = Iterator[tuple[tuple[str | int, ...], str]]
-Entry: TypeAlias = Mapping[str, Any]
 
 LEAST_LENGTH_M = 0.1
 _TOUCHING_M = 1e-9
@@ -80,8 +78,8 @@ def corners_apart(area: Entry) -> Faults:
 
 def inside_room(room: Entry) -> Faults:
     """Refuse walls and parts of the floor that leave the room, and doorways above the ceiling."""
-    size = room.get("size")
-    if not isinstance(size, list | tuple) or len(size) != 3 or not all(map(is_finite_number, size)):
+    size = size_of(room)
+    if not size:
         return
     for key, index, entry in _parts(room):
         ends = _ends(entry)

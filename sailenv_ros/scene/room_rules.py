@@ -5,11 +5,12 @@ Rules take entries as plain data, of which nothing is certain yet, as those of `
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Literal, TypeAlias
+from typing import Final, Literal
 
 from sailenv_ros.scene.messages import shown
+from sailenv_ros.scene.rules import Entry, Faults
 from sailenv_ros.scene.spec_outside import NO_OUTSIDE, OUTSIDE
 from sailenv_ros.types.validation import is_finite_number, shown_number
 
@@ -20,6 +21,7 @@ __all__ = [
     "inside_walls",
     "names_beside_room",
     "room_part_names",
+    "size_of",
     "without_overlaps",
 ]
 
@@ -35,9 +37,6 @@ DOOR_SIZE_M = (0.9, 2.05)
 """Width and height of a door that says nothing."""
 
 _TOUCHING_M = 1e-9
-
-Faults: TypeAlias = Iterator[tuple[tuple[str | int, ...], str]]
-Entry: TypeAlias = Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,12 +56,18 @@ class _Opening:
         return self.wall == other.wall and max(beside, above) < -_TOUCHING_M
 
 
+def size_of(room: Entry) -> Sequence[float]:
+    """Return a room's width, depth and height [m]; nothing if they are none."""
+    size = room.get("size")
+    if isinstance(size, list | tuple) and len(size) == 3 and all(map(is_finite_number, size)):
+        return size
+    return ()
+
+
 def inside_walls(room: Entry) -> Faults:
     """Refuse openings that are larger than their wall or leave it."""
-    size = room.get("size")
-    if not isinstance(size, list | tuple) or len(size) != 3 or not all(map(is_finite_number, size)):
-        return
-    for opening in _openings(room):
+    size = size_of(room)
+    for opening in _openings(room) if size else ():
         length = size[0] if opening.wall in ("north", "south") else size[1]
         place, wall = ("openings", opening.index), f"the {opening.wall} wall"
         free = (length - opening.width) / 2.0

@@ -17,6 +17,7 @@ from sailenv_ros.types.picture_settings import LIMITS
 from sailenv_ros.types.validation import is_finite_number, shown_number
 
 __all__ = [
+    "Entry",
     "Faults",
     "at_most_one",
     "away_from_position",
@@ -25,6 +26,8 @@ __all__ = [
     "distinct",
     "distinct_values",
     "few_samples",
+    "listed",
+    "named_objects",
     "movers_exist",
     "not_unlabelled",
     "only_beside",
@@ -138,10 +141,10 @@ def spans_ascend(entry: Entry) -> Faults:
 
 def carriers_exist(scene: Entry) -> Faults:
     """Refuse objects upon what is not there, or that carry themselves, be it through others."""
-    objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
+    objects = [entry for entry in listed(scene, "objects") if isinstance(entry, Mapping)]
     named = [entry for entry in objects if isinstance(entry.get("name"), str)]
     carrier = {entry["name"]: entry.get("on") for entry in named}
-    for index, entry in enumerate(_listed(scene, "objects")):
+    for index, entry in enumerate(listed(scene, "objects")):
         on = entry.get("on") if isinstance(entry, Mapping) else None
         if not isinstance(on, str):
             continue
@@ -166,9 +169,8 @@ def not_unlabelled(category: Entry) -> Faults:
 
 def parents_exist(scene: Entry) -> Faults:
     """Refuse parts of what is not there, or of themselves."""
-    objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
-    names = [entry["name"] for entry in objects if isinstance(entry.get("name"), str)]
-    for index, entry in enumerate(_listed(scene, "objects")):
+    names = named_objects(scene)
+    for index, entry in enumerate(listed(scene, "objects")):
         parent = entry.get("part_of") if isinstance(entry, Mapping) else None
         if not isinstance(parent, str):
             continue
@@ -183,7 +185,7 @@ def walls_need_a_room(scene: Entry) -> Faults:
     """Refuse objects at a wall where there is no room."""
     if scene.get("room") is not None:
         return
-    for index, entry in enumerate(_listed(scene, "objects")):
+    for index, entry in enumerate(listed(scene, "objects")):
         if isinstance(entry, Mapping) and entry.get("wall") is not None:
             yield ("objects", index, "wall"), "needs a room; the scene has none"
 
@@ -243,7 +245,7 @@ def distinct(key: str, *lists: str) -> Rule:
 
     def rule(entry: Entry) -> Faults:
         for name in lists:
-            entries = [e if isinstance(e, Mapping) else {} for e in _listed(entry, name)]
+            entries = [e if isinstance(e, Mapping) else {} for e in listed(entry, name)]
             for index, earlier in _repeated([e.get(key) for e in entries]):
                 value = shown(entries[index][key])
                 yield (
@@ -258,7 +260,7 @@ def distinct_values(key: str) -> Rule:
     """Make the rule that a list names nothing twice."""
 
     def rule(entry: Entry) -> Faults:
-        values = _listed(entry, key)
+        values = listed(entry, key)
         for index, _ in _repeated(values):
             yield (key, index), f"names {shown(values[index])} a second time"
 
@@ -268,16 +270,23 @@ def distinct_values(key: str) -> Rule:
 def movers_exist(scene: Entry) -> Faults:
     """Refuse an agent that follows a mover which the scene lacks."""
     single = scene.get("mover")
-    movers = [single] if isinstance(single, Mapping) else _listed(scene, "movers")
+    movers = [single] if isinstance(single, Mapping) else listed(scene, "movers")
     names = [m.get("name", "mover") for m in movers if isinstance(m, Mapping)] or ["mover"]
-    for index, agent in enumerate(_listed(scene, "agents")):
+    for index, agent in enumerate(listed(scene, "agents")):
         mover = agent.get("mover") if isinstance(agent, Mapping) else None
         if isinstance(mover, str) and mover not in names:
             known = suggestion(mover, [str(name) for name in names], listing="its movers")
             yield ("agents", index, "mover"), f"the scene has no mover {mover!r}; {known}"
 
 
-def _listed(entry: Entry, key: str) -> Sequence[Any]:
+def named_objects(scene: Entry) -> list[str]:
+    """Return the names of a scene's objects."""
+    objects = [entry for entry in listed(scene, "objects") if isinstance(entry, Mapping)]
+    return [entry["name"] for entry in objects if isinstance(entry.get("name"), str)]
+
+
+def listed(entry: Entry, key: str) -> Sequence[Any]:
+    """Return a list of an entry; an empty one for what is none."""
     values = entry.get(key)
     return values if isinstance(values, list | tuple) else ()
 

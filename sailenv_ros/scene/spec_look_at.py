@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, ClassVar
+from collections.abc import Iterator, Mapping
+from typing import ClassVar
 
 from sailenv_ros.scene.field_types import optional
 from sailenv_ros.scene.fields import Name, Position, Rule, SceneModel
 from sailenv_ros.scene.messages import suggestion
-from sailenv_ros.scene.rules import Entry, Faults
+from sailenv_ros.scene.rules import Entry, Faults, listed, named_objects
 from sailenv_ros.types.look_at import LookAt
 
 __all__ = ["LookAtSpec", "faced_objects_exist"]
@@ -37,8 +37,7 @@ class LookAtSpec(SceneModel):
 
 def faced_objects_exist(scene: Entry) -> Faults:
     """Refuse agents and movers that face an object which the scene lacks."""
-    objects = [entry for entry in _listed(scene, "objects") if isinstance(entry, Mapping)]
-    names = [entry["name"] for entry in objects if isinstance(entry.get("name"), str)]
+    names = named_objects(scene)
     for place, entry in _onlookers(scene):
         look_at = entry.get("keep_looking_at")
         name = look_at.get("object") if isinstance(look_at, Mapping) else None
@@ -52,11 +51,6 @@ def _onlookers(scene: Entry) -> Iterator[tuple[tuple[str | int, ...], Entry]]:
     if isinstance(scene.get("mover"), Mapping):
         yield ("mover",), scene["mover"]
     for key in ("movers", "agents"):
-        for index, entry in enumerate(_listed(scene, key)):
+        for index, entry in enumerate(listed(scene, key)):
             if isinstance(entry, Mapping):
                 yield (key, index), entry
-
-
-def _listed(entry: Entry, key: str) -> Sequence[Any]:
-    values = entry.get(key)
-    return values if isinstance(values, list | tuple) else ()

@@ -11,10 +11,10 @@ KHR_materials_emissive_strength.
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from sailenv_ros.assets.gltf_description import glb_with
+from sailenv_ros.assets.gltf_description import appended, glb_with
 from sailenv_ros.assets.gltf_emission import write_strength
 from sailenv_ros.scene_export.contents import (
     ExportedBody,
@@ -90,8 +90,8 @@ class _GlbWriter:
         for camera in self._scene.cameras:
             extras = camera_extras(camera.intrinsics)
             entry = {"name": camera.name, **gltf_camera(camera.intrinsics), "extras": extras}
-            node = {"name": camera.name, "camera": self._append("cameras", entry)}
-            roots.append(self._append("nodes", {**node, **_looking(camera.pose)}))
+            node = {"name": camera.name, "camera": appended(self._tree, "cameras", entry)}
+            roots.append(appended(self._tree, "nodes", {**node, **_looking(camera.pose)}))
             self._follow(roots[-1], "cameras", camera.name, _looking)
         if lights or self._scene.light_map is not None:
             self._tree["extensionsUsed"] = [LIGHTS if lights else LIGHT_MAP]
@@ -104,11 +104,6 @@ class _GlbWriter:
         write_strength(self._tree)
         return glb_with(self._tree, struct.pack("<I", len(binary)) + b"BIN\0" + binary)
 
-    def _append(self, key: str, entry: Mapping[str, Any]) -> int:
-        entries: list[Mapping[str, Any]] = self._tree.setdefault(key, [])
-        entries.append(entry)
-        return len(entries) - 1
-
     # -- nodes -----------------------------------------------------------------------------
 
     def _add_body(self, body: ExportedBody) -> int:
@@ -120,13 +115,13 @@ class _GlbWriter:
         node["extras"].update(body_extras(body))
         if labelled:
             node["children"] = [self._add_piece(piece) for piece in labelled]
-        number = self._append("nodes", node)
+        number = appended(self._tree, "nodes", node)
         self._deform(number, own)
         self._follow(number, "bodies", body.instance.id, _standing)
         return number
 
     def _add_piece(self, piece: ExportedPiece) -> int:
-        number = self._append("nodes", self._node(piece))
+        number = appended(self._tree, "nodes", self._node(piece))
         self._deform(number, piece)
         return number
 
@@ -156,7 +151,7 @@ class _GlbWriter:
         held = self._tree.setdefault("extensions", {}).setdefault(LIGHTS, {"lights": []})
         held["lights"].append(gltf_light(light))
         node = {"name": light.name, "extensions": {LIGHTS: {"light": len(held["lights"]) - 1}}}
-        return self._append("nodes", {**node, **_looking(light_pose(light))})
+        return appended(self._tree, "nodes", {**node, **_looking(light_pose(light))})
 
     # -- meshes and materials --------------------------------------------------------------
 
@@ -183,7 +178,7 @@ class _GlbWriter:
             entry: dict[str, Any] = {"name": name, "primitives": primitives}
             if samples:
                 entry["weights"] = [1.0] + [0.0] * (len(samples) - 1)
-            self._meshes[key] = self._append("meshes", entry)
+            self._meshes[key] = appended(self._tree, "meshes", entry)
         return self._meshes[key]
 
     def _material(self, material: Material, *, lit: bool) -> int:
@@ -214,7 +209,7 @@ class _GlbWriter:
                 entry["doubleSided"] = True
             if lit:
                 entry["extensions"] = {LIGHT_MAP: self._light_map()}
-            self._materials[own] = self._append("materials", entry)
+            self._materials[own] = appended(self._tree, "materials", entry)
         return self._materials[own]
 
     def _light_map(self) -> dict[str, Any]:
@@ -229,8 +224,8 @@ class _GlbWriter:
         if picture.name not in self._images:
             view = self._buffers.picture(picture)
             image = {"mimeType": picture.mime_type, "bufferView": view}
-            source = self._append("images", image)
-            self._images[picture.name] = self._append("textures", {"source": source})
+            source = appended(self._tree, "images", image)
+            self._images[picture.name] = appended(self._tree, "textures", {"source": source})
         return self._images[picture.name]
 
 

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from sailenv_ros.scene_export.contents import Vector3
 from sailenv_ros.scene_export.losses import counted
-from sailenv_ros.scene_export.mesh_files import MeshFiles
 from sailenv_ros.scene_export.names import FreeNames
-from sailenv_ros.scene_export.textures import Textures, halved
+from sailenv_ros.scene_export.textures import FilesBeside, halved
 from sailenv_ros.scene_export.xml_text import numbers
 from sailenv_ros.types.colour import srgb_from_linear
 from sailenv_ros.types.model import Material, ModelPart, Texture
@@ -23,7 +22,7 @@ LONGEST_SIDE_PX = 512
 """MuJoCo reads PNG alone, which is large; longer pictures are halved until they are as long."""
 
 
-class MjcfAssets:
+class MjcfAssets(FilesBeside):
     """The element `asset` of a file and the files that it names.
 
     Parameters
@@ -33,21 +32,14 @@ class MjcfAssets:
     """
 
     def __init__(self, node: Element) -> None:
+        super().__init__(png=True)
         self._node = node
         self._names = FreeNames()
-        self._meshes = MeshFiles()
         self._scaled: dict[tuple[int, Vector3], str] = {}
         self._materials: dict[int, str] = {}
-        self._textures = Textures(png=True)
         self._smaller: dict[int, Texture] = {}
         self._texture_names: set[str] = set()
         self._maps = 0
-
-    @property
-    def files(self) -> dict[str, bytes]:
-        """All files by their names."""
-        pictures = self._textures.pictures.values()
-        return self._meshes.files | {picture.name: picture.data for picture in pictures}
 
     def losses(self) -> Iterator[str]:
         """Yield what materials have lost."""

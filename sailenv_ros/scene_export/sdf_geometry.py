@@ -5,8 +5,8 @@ from __future__ import annotations
 from xml.etree.ElementTree import Element, SubElement
 
 from sailenv_ros.scene_export.contents import ExportedBody, Vector3
-from sailenv_ros.scene_export.mesh_files import MeshFiles, hull_bytes
-from sailenv_ros.scene_export.textures import Textures, texture_slots
+from sailenv_ros.scene_export.mesh_files import hull_bytes
+from sailenv_ros.scene_export.textures import FilesBeside, texture_slots
 from sailenv_ros.scene_export.xml_text import numbers
 from sailenv_ros.types.colour import srgb_from_linear
 from sailenv_ros.types.geometry import Pose
@@ -25,7 +25,7 @@ __all__ = ["SdfGeometry", "add_pose", "add_text"]
 _MAPS = {"base_colour": "albedo_map", "normal": "normal_map"}
 
 
-class SdfGeometry:
+class SdfGeometry(FilesBeside):
     """Meshes and pictures of a file.
 
     Parameters
@@ -35,15 +35,8 @@ class SdfGeometry:
     """
 
     def __init__(self, folder: str) -> None:
+        super().__init__()
         self._folder = folder
-        self._meshes = MeshFiles()
-        self._textures = Textures()
-
-    @property
-    def files(self) -> dict[str, bytes]:
-        """All of them by their names."""
-        pictures = self._textures.pictures.values()
-        return self._meshes.files | {picture.name: picture.data for picture in pictures}
 
     def add(self, link: Element, body: ExportedBody) -> None:
         """Add to a link what is drawn of a body, and what it collides as."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from sailenv_ros.assets.glb import JPEG_QUALITY
 from sailenv_ros.frame.pictures.codecs import encode_jpeg, encode_png
+from sailenv_ros.scene_export.mesh_files import MeshFiles
 from sailenv_ros.types.model import Material, Texture
 
 __all__ = ["SLOTS", "Picture", "Textures", "halved", "texture_slots"]
@@ -34,6 +35,25 @@ class Picture:
     name: str
     data: bytes
     mime_type: str
+
+
+class FilesBeside:
+    """Meshes and pictures that lie beside a file.
+
+    Parameters
+    ----------
+    png : bool
+        As of `Textures`.
+    """
+
+    def __init__(self, *, png: bool = False) -> None:
+        self._meshes, self._textures = MeshFiles(), Textures(png=png)
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """All of them by their names."""
+        pictures = self._textures.pictures.values()
+        return self._meshes.files | {picture.name: picture.data for picture in pictures}
 
 
 class Textures:

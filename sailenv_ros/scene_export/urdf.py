@@ -13,9 +13,9 @@ import numpy as np
 
 from sailenv_ros.scene_export.contents import ExportedBody, ExportedScene, Vector3, Written
 from sailenv_ros.scene_export.losses import joint_losses
-from sailenv_ros.scene_export.mesh_files import MeshFiles, hull_bytes
+from sailenv_ros.scene_export.mesh_files import hull_bytes
 from sailenv_ros.scene_export.names import FreeNames
-from sailenv_ros.scene_export.textures import Textures
+from sailenv_ros.scene_export.textures import FilesBeside
 from sailenv_ros.scene_export.xml_text import document, numbers
 from sailenv_ros.types.colour import srgb_from_linear
 from sailenv_ros.types.geometry import Pose, rpy_deg_from_quat_xyzw
@@ -46,23 +46,16 @@ def write_urdf(scene: ExportedScene, folder: str) -> Written:
     )
 
 
-class _UrdfWriter:
+class _UrdfWriter(FilesBeside):
     def __init__(self, scene: ExportedScene, folder: str) -> None:
+        super().__init__()
         self._scene = scene
         self._folder = folder
-        self._meshes = MeshFiles()
-        self._textures = Textures()
         names = FreeNames()
         self._names = {body.name: names.take(body.name) for body in scene.bodies}
         self._materials: dict[int, str] = {}
         self._material_names = FreeNames()
         self._root = Element("robot", name=names.take(f"{scene.name} piece"))
-
-    @property
-    def files(self) -> dict[str, bytes]:
-        """Meshes and pictures by their names."""
-        pictures = self._textures.pictures.values()
-        return self._meshes.files | {picture.name: picture.data for picture in pictures}
 
     def tree(self) -> Element:
         """Return the whole document."""

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.simulation.space_queries import solids_of_body
 from sailenv_ros.space.outlines import Solid
 from sailenv_ros.space.solid_distances import collision_box, solids_overlap
 from sailenv_ros.types.entities import Entity
@@ -16,6 +15,7 @@ from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.labels import Instance
 from sailenv_ros.types.validation import vector
 from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.crowd import solids_of_body
 from sailenv_ros.world.robot import Robot
 from sailenv_ros.world.world import World
 

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from sailenv_ros.frame.language.material_words import material_word
 from sailenv_ros.frame.language.scene_facts import Gap, Opening, SceneFacts
 from sailenv_ros.simulation.core import SimulationCore
-from sailenv_ros.simulation.space_queries import solids_of_body
 from sailenv_ros.space.free_space import BodySize
 from sailenv_ros.space.outlines import Solid
 from sailenv_ros.space.solid_distances import MOST_CORNERS, solids_overlap
 from sailenv_ros.types.labels import ROOM_PARTS
 from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot
 from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.crowd import solids_of_body
 from sailenv_ros.world.gaps import gaps
 from sailenv_ros.world.world import World
 

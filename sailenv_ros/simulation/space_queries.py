@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from sailenv_ros.rays.scene_geometry import SceneGeometry
 from sailenv_ros.space.free_space import BodySize, FreeSpace
 from sailenv_ros.space.grid import map_free_space
-from sailenv_ros.space.outlines import Solid, solids_of
+from sailenv_ros.space.outlines import Solid
 from sailenv_ros.space.ray_hits import RayCast
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
-from sailenv_ros.world.bodies import Body
+from sailenv_ros.world.crowd import solids_of_body
 from sailenv_ros.world.world import World
 
-__all__ = ["SpaceQueries", "solids_of_body", "solids_of_world"]
+__all__ = ["SpaceQueries", "solids_of_world"]
 
 MOST_MAPS = 8
 """Maps of one instant that are kept."""
@@ -76,9 +76,3 @@ def solids_of_world(world: World) -> Iterator[Solid]:
     """Yield what physics knows of every body, as convex solids in the world."""
     for body in world.bodies:
         yield from solids_of_body(body)
-
-
-def solids_of_body(body: Body) -> Iterator[Solid]:
-    """Yield what physics knows of a body, as convex solids in the world."""
-    placement = body.placement
-    return solids_of(placement.asset.collision, placement.scale, body.world_from_body())

@@ -13,10 +13,19 @@ __all__ = ["SynchronousSimulation"]
 
 
 class SynchronousSimulation(SimulationCore, WorldOperations):
-    """A `SimulationCore` with its operations; nothing runs beside the caller."""
+    """A `SimulationCore` with its operations; nothing runs beside the caller.
+
+    It begins in lockstep, with seed 0; all parameters are those of `SimulationCore`.
+    """
 
     def __init__(self, *args: Any, **settings: Any) -> None:
-        super().__init__(*args, **settings)
+        usual: dict[str, Any] = {
+            "mode": "lockstep",
+            "real_time_factor": 1.0,
+            "seed": 0,
+            "paused": False,
+        }
+        super().__init__(*args, **usual | settings)
         self.frames.work_alone()
 
     def submit_operation(

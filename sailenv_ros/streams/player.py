@@ -131,10 +131,7 @@ class Player:
         fresh = self._core is None
         if self._core is None:
             self._renderer = NativeRenderer()
-            self._core = SynchronousSimulation(
-                self._library, path, self._renderer, mode="lockstep", real_time_factor=1.0,
-                seed=seed, paused=False,
-            )  # fmt: skip
+            self._core = SynchronousSimulation(self._library, path, self._renderer, seed=seed)
         if not fresh or things is not None:
             for spec in self._core.info.agents:
                 self._core.delete_agent(spec.name)

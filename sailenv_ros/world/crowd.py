@@ -6,7 +6,7 @@ around has moved by more than a hand's breadth since the last one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +23,7 @@ from sailenv_ros.world.perches import Perch, perches_of
 from sailenv_ros.world.seats import Seat, seats_of
 from sailenv_ros.world.ways import Disc, Place, nearest_cell, way_between
 
-__all__ = ["Crowd", "Inhabitant", "body_size"]
+__all__ = ["Crowd", "Inhabitant", "body_size", "solids_of_body"]
 
 Doubles = NDArray[np.float64]
 
@@ -191,7 +191,7 @@ class Crowd:
         """Return the map for a body, without people."""
         self._follow()
         if size not in self._maps:
-            solids = [solid for body in self._bodies() for solid in _solids(body)]
+            solids = [solid for body in self._bodies() for solid in solids_of_body(body)]
             self._maps[size] = map_free_space(solids, size)
         return self._maps[size]
 
@@ -288,6 +288,7 @@ def _place_in(body: Body, share: float) -> Doubles:
     return place
 
 
-def _solids(body: Body) -> Iterable[Solid]:
+def solids_of_body(body: Body) -> Iterator[Solid]:
+    """Yield what physics knows of a body, as convex solids in the world."""
     placement = body.placement
     return solids_of(placement.asset.collision, placement.scale, body.world_from_body())

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.behaviours import BodyState, JointMotion, RunningBehaviour, running_motion
 from sailenv_ros.errors import InvalidRequest
+from sailenv_ros.postures.limbs import cross
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.joints import JointState
 from sailenv_ros.types.validation import checked_number
@@ -21,7 +22,7 @@ from sailenv_ros.world.bodies import NOT_THERE, Body, FrustumPlanes, Vector3, ve
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.joint_links import STANDING, JointLink
 from sailenv_ros.world.joint_tree import JointTree
-from sailenv_ros.world.kinematics import Twist, composed, cross, link_pose, link_velocity
+from sailenv_ros.world.kinematics import Twist, composed, link_pose, link_velocity
 from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.placement import JointPlacement, Placement
 

@@ -12,20 +12,15 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.postures.limbs import cross
 from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose
 from sailenv_ros.world.placement import JointPlacement
 
-__all__ = ["composed", "cross", "link_pose", "link_velocity"]
+__all__ = ["composed", "link_pose", "link_velocity"]
 
 Doubles: TypeAlias = NDArray[np.float64]
 Twist: TypeAlias = tuple[Doubles, Doubles]
 """Velocity of a frame's origin [m/s] and angular velocity [rad/s], world axes."""
-
-
-def cross(a: Doubles, b: Doubles) -> Doubles:
-    """Return the vector product of two vectors (3,): NumPy's takes twenty times as long."""
-    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
-    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def composed(a_from_b: Pose, b_from_c: Pose) -> Pose:

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.postures.limbs import cross
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.robots import DriveMode, RobotJointState, RobotState
 from sailenv_ros.types.validation import checked_number
@@ -19,7 +20,6 @@ from sailenv_ros.world.bullet import STEPS_PER_SECOND, BulletClient
 from sailenv_ros.world.joint_links import JointDrive
 from sailenv_ros.world.joint_tree import JointTree
 from sailenv_ros.world.jointed_bodies import JointedBody
-from sailenv_ros.world.kinematics import cross
 from sailenv_ros.world.robot_collision import let_pass
 from sailenv_ros.world.robot_kinematics import (
     all_positions,

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
+from sailenv_ros.postures.standing import about
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.robots import RobotJoint, RobotLink, RobotModel
 
@@ -98,9 +99,7 @@ def parent_from_link(joint: RobotJoint, position: float) -> Doubles:
     if joint.type == "slide":
         move[:3, 3] = axis * position
     else:
-        x, y, z = axis
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        turn = np.eye(3) + np.sin(position) * cross + (1.0 - np.cos(position)) * (cross @ cross)
+        turn = about(axis, position)
         origin = np.asarray(joint.origin_m)
         move[:3, :3], move[:3, 3] = turn, origin - turn @ origin
     return np.asarray(rest @ move)

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import UnknownName
+from sailenv_ros.postures.limbs import cross
 from sailenv_ros.scene.spec_robots import SensorSpec
 from sailenv_ros.space.ray_hits import RayCast
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.robot_sensors import InertialMeasurement, LaserScan
 from sailenv_ros.world.bullet import STEPS_PER_SECOND
 from sailenv_ros.world.jointed_bodies import JointedBody
-from sailenv_ros.world.kinematics import composed, cross
+from sailenv_ros.world.kinematics import composed
 from sailenv_ros.world.robot_kinematics import carrier
 from sailenv_ros.world.robot_placements import RobotPlacement
 

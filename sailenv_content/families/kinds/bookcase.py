@@ -35,11 +35,17 @@ def _shelved(b: PieceBuilder, v: Values, room: Box, rows: int) -> None:
             book_row(b, row, full=b.between(0.45, 1.0))
 
 
-def _closed(b: PieceBuilder, v: Values) -> None:
-    """Make a carcass on a plinth, full of shelves."""
+def _on_plinth(b: PieceBuilder, v: Values) -> Box:
+    """Make a carcass on a plinth; return its hollow."""
     inside = _hollow(v, 0.06)
     carcass(b, v.material, inside, board=BOARD_M)
     b.box(v.material, (v.depth - 0.04, v.width - 0.01, 0.06), (-0.015, 0.0, 0.03))
+    return inside
+
+
+def _closed(b: PieceBuilder, v: Values) -> None:
+    """Make a carcass on a plinth, full of shelves."""
+    inside = _on_plinth(b, v)
     _shelved(b, v, inside, v.rows)
 
 
@@ -81,9 +87,7 @@ def _industrial(b: PieceBuilder, v: Values) -> None:
 
 def _with_doors(b: PieceBuilder, v: Values) -> None:
     """Make shelves above, and two doors in front of stores below."""
-    inside = _hollow(v, 0.06)
-    carcass(b, v.material, inside, board=BOARD_M)
-    b.box(v.material, (v.depth - 0.04, v.width - 0.01, 0.06), (-0.015, 0.0, 0.03))
+    inside = _on_plinth(b, v)
     split = 0.06 + BOARD_M + v.low
     front = float(inside.high[0]) - 0.022
     b.box(v.material, (inside.size[0], inside.size[1], BOARD_M), (inside.middle[0], 0.0, split))

@@ -10,14 +10,14 @@ from sailenv_content.families.cabinets import (
     CABINET_MATERIALS,
     SCHEMES,
     cabinet_drawer,
+    stocked,
     unit,
 )
-from sailenv_content.families.contents import plates, stores
+from sailenv_content.families.contents import stores
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, door
 from sailenv_content.families.hardware import DOOR_CLOSE, DRAWER_CLOSE
 from sailenv_content.families.hollow import Box
-from sailenv_content.families.joinery import shelf
 from sailenv_content.families.materials import WOODS, PieceMaterial, glass, metal, paint
 from sailenv_content.families.parameters import Choice, Span, Values
 from sailenv_content.families.plumbing import sink_basin, tap
@@ -26,13 +26,6 @@ __all__ = ["FAMILY"]
 
 DEPTH_M, PLINTH_M, TOP_M = 0.6, 0.1, 0.036
 SHEET = metal("steel", 700.0)
-
-
-def _stocked(b: PieceBuilder, v: Values, room: Box) -> None:
-    z = float(room.middle[2])
-    shelf(b, v.inner, room, z, setback=0.05)
-    plates(b, Box((room.low[0], room.low[1], z), room.high))
-    stores(b, Box(room.low, (room.high[0], room.high[1], z - 0.02)))
 
 
 def _doors(b: PieceBuilder, v: Values, name: str, fronts: Box, hinge: str) -> None:
@@ -96,7 +89,7 @@ def _cabinet(
                 )
         else:
             if kind == "cupboard":
-                _stocked(b, v, inside)
+                stocked(b, v.inner, inside, setback=0.05)
             else:
                 stores(b, inside.within((0.1, 0.03, 0.0), (0.1, 0.03, 0.3)))
             _doors(b, v, name, fronts, v.hinge)
@@ -205,7 +198,7 @@ def _upper(b: PieceBuilder, v: Values, width: float, kinds: list[str]) -> None:
             continue
         outer = Box((0.0, y, low), (deep, y + each, high))
         inside, fronts = unit(b, v.scheme[0], outer)
-        _stocked(b, v, inside)
+        stocked(b, v.inner, inside, setback=0.05)
         _doors(b, Values({**v.all, "front": v.above}), f"upper {number + 1}", fronts, v.hinge)
 
 

@@ -10,8 +10,9 @@ from sailenv_content.families.cabinets import (
     cabinet_drawer,
     divided,
     outer_doors,
+    stocked,
 )
-from sailenv_content.families.contents import plates, stores
+from sailenv_content.families.contents import plates
 from sailenv_content.families.family import Family, Style
 from sailenv_content.families.fronts import CLEARANCE_M, sliding_doors
 from sailenv_content.families.hollow import Box
@@ -22,20 +23,12 @@ from sailenv_content.families.parameters import Choice, Span, Values, Whole
 __all__ = ["FAMILY"]
 
 
-def _stocked(b: PieceBuilder, v: Values, room: Box) -> None:
-    """Put a shelf into a room, plates on it and stores below it."""
-    z = float(room.middle[2])
-    shelf(b, v.inner, room, z, setback=0.03)
-    plates(b, Box((room.low[0], room.low[1], z), room.high))
-    stores(b, Box(room.low, (room.high[0], room.high[1], z - 0.02)))
-
-
 def _doors(b: PieceBuilder, v: Values) -> None:
     """Make doors at the sides, drawers between them."""
     inside, fronts = cabinet_body(b, v)
     rooms = divided(b, v.inner, inside, [1.0, 1.0, 1.0])
-    _stocked(b, v, rooms[0])
-    _stocked(b, v, rooms[2])
+    stocked(b, v.inner, rooms[0], setback=0.03)
+    stocked(b, v.inner, rooms[2], setback=0.03)
     right, middle, left = fronts.columns([1.0, 1.0, 1.0], CLEARANCE_M)
     outer_doors(b, v, right, left)
     for number, panel in enumerate(middle.rows([1.0] * v.rows, CLEARANCE_M)):
@@ -46,7 +39,7 @@ def _sliding(b: PieceBuilder, v: Values) -> None:
     """Make two doors that slide past each other, of wood or of glass, before two rooms."""
     inside, fronts = cabinet_body(b, Values({**v.all, "depth": v.depth - 0.03}))
     for room in divided(b, v.inner, inside, [1.0, 1.0]):
-        _stocked(b, v, room)
+        stocked(b, v.inner, room, setback=0.03)
     x = fronts.low[0] + 0.003
     opening = Box((x, *fronts.low[1:]), (x + 0.05, *fronts.high[1:]))
     z = float(opening.middle[2])
@@ -64,7 +57,7 @@ def _drawers_and_doors(b: PieceBuilder, v: Values) -> None:
     shelf(b, v.inner, inside, split, setback=0.0)
     below = Box(inside.low, (inside.high[0], inside.high[1], split - BOARD_M))
     for room in divided(b, v.inner, below, [1.0] * v.pairs):
-        _stocked(b, v, room)
+        stocked(b, v.inner, room, setback=0.03)
     for number, panel in enumerate(upper.columns([1.0] * v.drawers, CLEARANCE_M)):
         cabinet_drawer(b, v, f"drawer {number + 1}", panel, inside, front="flat")
     columns = lower.columns([1.0] * (2 * v.pairs), CLEARANCE_M)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sailenv_content.families.builder import PieceBuilder
 from sailenv_content.families.draping import fringe
@@ -52,12 +53,7 @@ def _rolled(b: PieceBuilder, v: Values) -> None:
         rings[row, :, 0], rings[row, :, 1], rings[row, :, 2] = outline[:, 0], y, -outline[:, 1]
     # The ends are strips along the winding: a fan would fill the gaps.
     raw = loft(rings, caps=False)
-    n, columns = len(turn), len(outline) + 1
-    first = np.arange(n - 1)
-    back = 2 * n - 1 - first
-    strip = np.concatenate(
-        [np.stack([first, first + 1, back - 1], -1), np.stack([first, back - 1, back], -1)]
-    )
+    columns, strip = len(outline) + 1, _strip(len(turn))
     triangles = np.concatenate([raw.triangles, strip[:, ::-1], strip + columns])
     uvs = raw.uvs * (float(radius.max()) * 2 * turns / TILE_M, w / TILE_M)
     mesh = smooth_mesh(RawMesh(positions=raw.positions, uvs=uvs, triangles=triangles), 60.0)
@@ -72,6 +68,15 @@ def _rolled(b: PieceBuilder, v: Values) -> None:
         for aside in (-0.008, 0.0, 0.008):
             band = swept(path + np.array([0.0, aside, 0.0]), 0.004, sides=6)
             b.form(v.second, band, collides="none", volume=1e-6)
+
+
+def _strip(n: int) -> NDArray[np.int64]:
+    """Return (2 N - 2, 3) triangles between a row of points and the row that leads back."""
+    first = np.arange(n - 1)
+    back = 2 * n - 1 - first
+    return np.concatenate(
+        [np.stack([first, first + 1, back - 1], -1), np.stack([first, back - 1, back], -1)]
+    )
 
 
 def _sheet(b: PieceBuilder, v: Values, d: float, w: float, lift: float) -> Mesh:
@@ -90,11 +95,7 @@ def _sheet(b: PieceBuilder, v: Values, d: float, w: float, lift: float) -> Mesh:
     rings[:, :ny, 2] = height * 0.9
     rings[:, ny:, 2] = (height + v.thick)[:, ::-1]
     raw = loft(rings, caps=False)
-    first = np.arange(ny - 1)
-    back = 2 * ny - 1 - first
-    strip = np.concatenate(
-        [np.stack([first, first + 1, back - 1], -1), np.stack([first, back - 1, back], -1)]
-    )
+    strip = _strip(ny)
     triangles = np.concatenate([raw.triangles, strip[:, ::-1], strip + (nx - 1) * (2 * ny + 1)])
     uvs = raw.positions[:, :2] / TILE_M
     return smooth_mesh(RawMesh(positions=raw.positions, uvs=uvs, triangles=triangles), 70.0)

@@ -6,7 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailenv_ros.assets.outside.painting import Board, Floats, Painter, noise, plain, resized, tiles
+from sailenv_ros.assets.outside.painting import (
+    Board,
+    Floats,
+    Painter,
+    noise,
+    plain,
+    resized,
+    tiles,
+    uneven,
+)
 from sailenv_ros.assets.outside.scenery import GROUND_M, Scenery
 
 __all__ = ["House", "add_house", "drawn_house"]
@@ -197,8 +206,7 @@ def _front(house: House, columns: int, door: int, *, lit: float) -> Painter:
 def _bricks(board: Board) -> Floats:
     row = np.floor(board.up_m / 0.075)
     place = board.across_m / 0.24 + 0.5 * (row % 2)
-    hashed = np.sin(12.9898 * np.floor(place) + 78.233 * row) * 43758.547
-    tone: Floats = (1.0 + 0.35 * (hashed - np.floor(hashed) - 0.5)).astype(np.float32)
+    tone: Floats = (1.0 + 0.35 * uneven(np.floor(place), row)).astype(np.float32)
     return tone
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +26,7 @@ __all__ = [
     "plain",
     "resized",
     "tiles",
+    "uneven",
 ]
 
 Floats: TypeAlias = NDArray[np.float32]
@@ -108,6 +109,12 @@ def lawn(colour: Rgb = (0.085, 0.135, 0.035)) -> Painter:
     return paint
 
 
+def uneven(column: Floats, row: Floats | float = 0.0) -> NDArray[Any]:
+    """Return a number from -0.5 to 0.5 that follows from a column and a row, as if by chance."""
+    hashed = np.sin(12.9898 * column + 78.233 * row) * 43758.547
+    return hashed - np.floor(hashed) - 0.5
+
+
 def paving(colour: Rgb, slab_m: tuple[float, float], joint_m: float = 0.02) -> Painter:
     """Return a painter of slabs with joints, of which no two have quite the same tone."""
 
@@ -115,8 +122,7 @@ def paving(colour: Rgb, slab_m: tuple[float, float], joint_m: float = 0.02) -> P
         row = np.floor(board.up_m / slab_m[1])
         place = board.across_m / slab_m[0] + 0.5 * (row % 2)
         column = np.floor(place)
-        hashed = np.sin(12.9898 * column + 78.233 * row) * 43758.547
-        tone = 1.0 + 0.2 * (hashed - np.floor(hashed) - 0.5)
+        tone = 1.0 + 0.2 * uneven(column, row)
         tone = tone + 0.08 * noise(board, 0.6) + 0.08 * noise(board, 0.03)
         width = 0.5 * max(joint_m, board.width_m / board.columns)
         off = np.minimum(place - column, column + 1.0 - place) * slab_m[0]
@@ -150,10 +156,9 @@ def boards(colour: Rgb, width_m: float = 0.12) -> Painter:
 
     def paint(board: Board) -> Floats:
         number = np.floor(board.across_m / width_m)
-        hashed = np.sin(12.9898 * number) * 43758.547
         within = board.across_m / width_m - number
         gap = np.where(np.minimum(within, 1.0 - within) < 0.06, 0.35, 1.0)
-        tone = gap * (1.0 + 0.25 * (hashed - np.floor(hashed) - 0.5))
+        tone = gap * (1.0 + 0.25 * uneven(number))
         return _toned(colour, (tone * (1.0 + 0.1 * noise(board, 0.25))).astype(np.float32))
 
     return paint
@@ -166,9 +171,8 @@ def tiles(colour: Rgb) -> Painter:
         row = np.floor(board.up_m / 0.3)
         within = board.up_m / 0.3 - row
         place = board.across_m / 0.22 + 0.5 * (row % 2)
-        hashed = np.sin(12.9898 * np.floor(place) + 78.233 * row) * 43758.547
         round_ = 0.85 + 0.3 * np.sin(np.pi * (place - np.floor(place)))
-        tone = (0.72 + 0.4 * within) * round_ * (1.0 + 0.25 * (hashed - np.floor(hashed) - 0.5))
+        tone = (0.72 + 0.4 * within) * round_ * (1.0 + 0.25 * uneven(np.floor(place), row))
         tone = tone * (1.0 + 0.1 * noise(board, 1.5))
         return _toned(colour, tone.astype(np.float32))
 

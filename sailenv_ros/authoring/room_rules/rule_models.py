@@ -42,6 +42,7 @@ _Share = Annotated[float, Number(least=-1.0, most=1.0)]
 _Strength = Annotated[float, Number(least=0.0, most=1000.0)]
 _Name = Annotated[str, Text(r"[a-z][a-z0-9_ ]{0,40}", "a lower-case name")]
 
+_LACKING = "category: not if something of the room is of it, or has such a part"
 _PAIR = "one number, or two [least, most]"
 Metres: TypeAlias = Annotated[tuple[_Length, _Length], Vector(2, _PAIR, one_for_all=True)]
 Turn: TypeAlias = Annotated[tuple[_Degrees, _Degrees], Vector(2, _PAIR, one_for_all=True)]
@@ -82,9 +83,7 @@ class CompanionRule(_RuleModel):
     aside: Metres = Field(default=(0.0, 0.0), description="off the middle, to its left [m]")
     turn: Turn = Field(default=(0.0, 0.0), description="besides facing the other piece [deg]")
     ahead: _Length = Field(default=0.0, description="for `under`: off the middle, to its front [m]")
-    lacking: _Name | None = optional(
-        "category: not if something of the room is of it, or has such a part"
-    )
+    lacking: _Name | None = optional(_LACKING)
     in_view: Annotated[bool, Switch()] = Field(
         default=False, description="true: what is between them is part of the two, or nothing"
     )
@@ -279,9 +278,7 @@ class PieceRule(_RuleModel):
     unless: tuple[_Name, ...] = Field(
         default=(), description="pieces of the room that stand for it: then it has none"
     )
-    lacking: _Name | None = optional(
-        "category: not if something of the room is of it, or has such a part"
-    )
+    lacking: _Name | None = optional(_LACKING)
     per_metre: Fraction = Field(
         default=0.0, description="more of them: so many per square metre of the floor"
     )

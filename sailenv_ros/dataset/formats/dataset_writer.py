@@ -20,7 +20,7 @@ from sailenv_ros.dataset.formats.dataset_format import (
     Sample,
     WriteResult,
 )
-from sailenv_ros.dataset.formats.formats import FORMATS, check_views, format_class
+from sailenv_ros.dataset.formats.formats import check_views, format_class, wanted_formats
 from sailenv_ros.dataset.formats.journal import IDENTITY_FILE, FrameJournal
 from sailenv_ros.dataset.formats.splits import Splits
 from sailenv_ros.dataset.identity import WorkIdentity
@@ -112,17 +112,14 @@ class DatasetWriter:
     ) -> None:
         if flow not in get_args(FlowDirection):
             raise InvalidRequest("flow", flow, f"one of: {', '.join(get_args(FlowDirection))}")
-        names = list(dict.fromkeys(formats))
-        if not names:
-            raise InvalidRequest("formats", (), f"at least one of: {', '.join(FORMATS)}")
-        classes = {name: format_class(name) for name in names}
+        classes = {name: format_class(name) for name in wanted_formats(formats)}
         for name, made in classes.items():
             if splits is not None and made.is_sequence and not made.tells_splits:
                 raise InvalidRequest("split", name, "none, as frames of that format are a sequence")
         self.folder = Path(folder)
         self._splits = splits
         self._head = {
-            "formats": names,
+            "formats": list(classes),
             "split": None if splits is None else list(splits.shares),
             "seed": 0 if splits is None else splits.seed,
             "flow": flow,
@@ -141,7 +138,7 @@ class DatasetWriter:
             self._journal = FrameJournal(store)
             self._held_place = stack.pop_all()
         self._formats: dict[str, DatasetFormat] = {
-            name: made(self.folder / name if len(names) > 1 else self.folder)
+            name: made(self.folder / name if len(classes) > 1 else self.folder)
             for name, made in classes.items()
         }
         shared: dict[Any, Any] = {}

@@ -8,9 +8,9 @@ from pathlib import Path
 from sailenv_ros.dataset.formats.annotation_rules import ALL_OBJECTS, AnnotationRules
 from sailenv_ros.dataset.formats.dataset_format import FlowDirection
 from sailenv_ros.dataset.formats.dataset_writer import DatasetSummary, DatasetWriter
-from sailenv_ros.dataset.formats.formats import FORMATS, check_views
+from sailenv_ros.dataset.formats.formats import check_views, wanted_formats
 from sailenv_ros.dataset.formats.splits import Splits
-from sailenv_ros.errors import InvalidRequest, RecordingError
+from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.frames import RecordedFrames
 from sailenv_ros.recording.reader import RecordingReader
 
@@ -67,9 +67,7 @@ def export(
     RecordingError
         If the recording cannot be read or a file not written.
     """
-    names = list(dict.fromkeys(formats))
-    if not names:
-        raise InvalidRequest("formats", (), f"at least one of: {', '.join(FORMATS)}")
+    names = wanted_formats(formats)
     with RecordingReader(path) as reader:
         frames = RecordedFrames(reader, agent)
         for name in names:

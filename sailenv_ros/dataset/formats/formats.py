@@ -9,7 +9,7 @@ from types import MappingProxyType
 from sailenv_ros.dataset.formats.dataset_format import DatasetFormat
 from sailenv_ros.errors import InvalidRequest, UnknownName
 
-__all__ = ["FORMATS", "check_views", "format_class"]
+__all__ = ["FORMATS", "check_views", "format_class", "wanted_formats"]
 
 FORMATS: Mapping[str, str] = MappingProxyType(
     {
@@ -44,6 +44,20 @@ FORMATS: Mapping[str, str] = MappingProxyType(
     }
 )
 """Module in this folder and class of each format, by its name."""
+
+
+def wanted_formats(formats: Iterable[str]) -> list[str]:
+    """Return each name of some formats once.
+
+    Raises
+    ------
+    InvalidRequest
+        If there is none.
+    """
+    names = list(dict.fromkeys(formats))
+    if not names:
+        raise InvalidRequest("formats", (), f"at least one of: {', '.join(FORMATS)}")
+    return names
 
 
 def format_class(name: str) -> type[DatasetFormat]:

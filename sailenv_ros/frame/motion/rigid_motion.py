@@ -34,8 +34,8 @@ __all__ = [
     "MotionTable",
     "ObservedPoses",
     "camera_points",
+    "matched",
     "motion_table",
-    "motion_of_surfaces",
     "rigid_points",
     "rows_moved",
 ]
@@ -83,21 +83,24 @@ class ObservedPoses:
     surfaces: Mapping[int, DeformedInstance] = field(default_factory=dict)
 
 
-def motion_of_surfaces(
-    begin: ObservedPoses, end: ObservedPoses, ids: NDArray[np.uint16]
-) -> tuple[tuple[int, ...], NDArray[np.bool_]]:
-    """Return which of some instances deform between two instants, and (N,) whose motion is known.
+def matched(
+    begin: ObservedPoses, end: ObservedPoses
+) -> tuple[NDArray[np.intp], NDArray[np.intp], tuple[int, ...]]:
+    """Return the rows of instances of known motion at either instant, and which ids deform.
 
-    Of what deforms it is known where both vertices are.
+    They are there at both, with one history; of what deforms both vertices are there.
     """
-    deforming, known = [], np.ones(len(ids), np.bool_)
+    _, rows, others = np.intersect1d(begin.ids, end.ids, assume_unique=True, return_indices=True)
+    same = begin.histories[rows] == end.histories[others]
+    rows, others = rows[same], others[same]
+    ids, deforming, known = begin.ids[rows], [], np.ones(len(rows), np.bool_)
     for key in begin.surfaces.keys() | end.surfaces.keys():
         one, other = begin.surfaces.get(key), end.surfaces.get(key)
         if one is None or other is None:
             known[ids == key] = False
         elif one.shape is not other.shape and (ids == key).any():
             deforming.append(key)
-    return tuple(sorted(deforming)), known
+    return rows[known], others[known], tuple(sorted(deforming))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -144,11 +147,7 @@ def motion_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     the camera's turn. Where the other's rays are parallel it has none unless the camera rests: a
     direction alone has no place there.
     """
-    _, rows, others = np.intersect1d(begin.ids, end.ids, assume_unique=True, return_indices=True)
-    same = begin.histories[rows] == end.histories[others]
-    rows, others = rows[same], others[same]
-    deforming, known = motion_of_surfaces(begin, end, begin.ids[rows])
-    rows, others = rows[known], others[known]
+    rows, others, deforming = matched(begin, end)
     row_of_instance = np.zeros(65536, np.uint16)
     row_of_instance[0] = _SKY_ROW
     row_of_instance[begin.ids[rows]] = np.arange(len(rows)) + _FIRST_ROW

@@ -12,11 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.motion.rigid_motion import (
-    MotionTable,
-    ObservedPoses,
-    motion_of_surfaces,
-)
+from sailenv_ros.frame.motion.rigid_motion import MotionTable, ObservedPoses, matched
 from sailenv_ros.native.motion_kernels import RowMotions
 from sailenv_ros.types.geometry import invert
 
@@ -33,11 +29,7 @@ def rolling_table(begin: ObservedPoses, end: ObservedPoses) -> MotionTable:
     begin, end : ObservedPoses
         Of which one or both have poses by rows.
     """
-    _, rows, others = np.intersect1d(begin.ids, end.ids, assume_unique=True, return_indices=True)
-    same = begin.histories[rows] == end.histories[others]
-    rows, others = rows[same], others[same]
-    deforming, known = motion_of_surfaces(begin, end, begin.ids[rows])
-    rows, others = rows[known], others[known]
+    rows, others, deforming = matched(begin, end)
     ids = begin.ids[rows]
     first, last = begin.world_from_instance[rows], end.world_from_instance[others]
     moves = (first != last).any(axis=(1, 2))

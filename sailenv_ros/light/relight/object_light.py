@@ -28,6 +28,7 @@ from sailenv_ros.native.relight_kernels import (
     light_of_probes,
 )
 from sailenv_ros.rays.model_triangles import triangles_of
+from sailenv_ros.rays.static_geometry import PlacedModel
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Model
@@ -51,24 +52,15 @@ LEAST_WEIGHT = 0.02
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
-class PlacedObject:
+class PlacedObject(PlacedModel):
     """An object that can move, where it is.
 
     Attributes
     ----------
-    id : int
-        Of the instance.
-    model : Model
-    scale : (3,) tuple of float
-    world_from_body : (4, 4) float64
     moves : bool
         Whether it moves now.
     """
 
-    id: int
-    model: Model
-    scale: tuple[float, float, float]
-    world_from_body: NDArray[np.float64]
     moves: bool = False
 
     @property

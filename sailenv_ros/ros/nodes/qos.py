@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
+from tf2_msgs.msg import TFMessage
 
 from sailenv_ros.recording.topics import OfferedQos
 from sailenv_ros.ros.nodes.parameters import given_parameters
@@ -19,7 +21,16 @@ __all__ = [
     "no_events",
     "overriding",
     "recorded_qos",
+    "transform_publishers",
 ]
+
+
+def transform_publishers(node: Node) -> tuple[Publisher, Publisher]:
+    """Return tf2's own topics, which are global: of what moves, and the latched one of the rest."""
+    return (
+        node.create_publisher(TFMessage, "/tf", frame_qos(), event_callbacks=no_events()),
+        node.create_publisher(TFMessage, "/tf_static", latched_qos(), event_callbacks=no_events()),
+    )
 
 
 def frame_qos() -> QoSProfile:

@@ -29,7 +29,7 @@ from sailenv_msgs_py.robot_msgs import (
 from sailenv_msgs_py.space_msgs import occupancy_grid_to_msg
 from sailenv_msgs_py.transforms import twist_from_msg
 from sailenv_ros.errors import InvalidState, SailenvError, SimulationClosed
-from sailenv_ros.ros.nodes.qos import command_qos, frame_qos, latched_qos, no_events
+from sailenv_ros.ros.nodes.qos import command_qos, frame_qos, latched_qos, transform_publishers
 from sailenv_ros.ros.nodes.requests import OperationRunner
 from sailenv_ros.ros.nodes.robot_frames import MAP, RobotFrames, map_transform, ros_name
 from sailenv_ros.ros.nodes.simulation_topic import SimulationTopic
@@ -67,12 +67,7 @@ class RobotTopics(SimulationTopic):
         self._node, self._executor, self._runner = node, executor, runner
         self._endpoints: dict[str, _Endpoints] = {}
         self._wanted: tuple[Robot, ...] = ()
-        self._moving = node.create_publisher(
-            TFMessage, "/tf", frame_qos(), event_callbacks=no_events()
-        )
-        self._fixed = node.create_publisher(
-            TFMessage, "/tf_static", latched_qos(), event_callbacks=no_events()
-        )
+        self._moving, self._fixed = transform_publishers(node)
 
     def begin(self, simulation: Simulation) -> None:
         """Follow a simulation from now on: its steps, and what is changed between them."""

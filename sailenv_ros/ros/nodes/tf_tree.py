@@ -22,7 +22,7 @@ from tf2_msgs.msg import TFMessage
 from sailenv_msgs_py.frame_info import WORLD_FRAME_ID, optical_frame_id
 from sailenv_msgs_py.transforms import pose_to_msg
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.ros.nodes.qos import frame_qos, latched_qos, no_events
+from sailenv_ros.ros.nodes.qos import transform_publishers
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, invert
@@ -84,13 +84,7 @@ class TfTree:
         self._extrinsics: dict[str, Pose | None] = {}
         self._bodies: frozenset[str] = frozenset()
         self._told_bodies: dict[str, tuple[int, int]] = {}
-        # tf2's own names and qualities of service: global topics, latched for the static ones.
-        self._moving = node.create_publisher(
-            TFMessage, "/tf", frame_qos(), event_callbacks=no_events()
-        )
-        self._fixed = node.create_publisher(
-            TFMessage, "/tf_static", latched_qos(), event_callbacks=no_events()
-        )
+        self._moving, self._fixed = transform_publishers(node)
 
     @property
     def wanted(self) -> bool:

@@ -56,10 +56,8 @@ class RigOperations(Caller):
 
         Parameters
         ----------
-        views : str, iterable of str or None
-            Views of each; None means each camera's own.
-        agent : str or None
-            The agent whose body carries the cameras.
+        views, agent
+            As of `capture_rig`.
 
         Returns
         -------

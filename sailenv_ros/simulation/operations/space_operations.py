@@ -67,6 +67,18 @@ def _reach(what: str, value: Any) -> float:
     return length
 
 
+def _body(
+    height_m: float, radius_m: float, resolution_m: float, floor_m: float, step_m: float
+) -> BodySize:
+    return BodySize(
+        height_m=height_m,
+        radius_m=radius_m,
+        resolution_m=resolution_m,
+        floor_m=floor_m,
+        step_m=step_m,
+    )
+
+
 class SpaceOperations(Caller):
     """The space of the scene as it stands now.
 
@@ -123,15 +135,8 @@ class SpaceOperations(Caller):
         -------
         free_space : FreeSpace
         """
-        space = core.space.free_space(
-            BodySize(
-                height_m=height_m,
-                radius_m=radius_m,
-                resolution_m=resolution_m,
-                floor_m=floor_m,
-                step_m=step_m,
-            )
-        )
+        body = _body(height_m, radius_m, resolution_m, floor_m, step_m)
+        space = core.space.free_space(body)
         core.on_free_space(space)
         return space
 
@@ -165,13 +170,7 @@ class SpaceOperations(Caller):
         InvalidRequest
             If one of the places is not free, or no path joins them.
         """
-        body = BodySize(
-            height_m=height_m,
-            radius_m=radius_m,
-            resolution_m=resolution_m,
-            floor_m=floor_m,
-            step_m=step_m,
-        )
+        body = _body(height_m, radius_m, resolution_m, floor_m, step_m)
         return core.space.free_space(body).path(start, goal)
 
     @operation(
@@ -216,13 +215,7 @@ class SpaceOperations(Caller):
         InvalidState
             If nothing is free.
         """
-        body = BodySize(
-            height_m=height_m,
-            radius_m=radius_m,
-            resolution_m=resolution_m,
-            floor_m=floor_m,
-            step_m=step_m,
-        )
+        body = _body(height_m, radius_m, resolution_m, floor_m, step_m)
         used = core.seed if seed is None else seed
         return core.space.free_space(body).random_pose(
             name, seed=used, reachable_from=reachable_from
