@@ -17,9 +17,8 @@ import pytest
 
 from sailenv_ros.gateway import GatewayServer
 from sailenv_ros.gateway.gateway_limits import GatewayLimits
-from sailenv_ros.gateway.session import AGENT_PREFIX
 from sailenv_ros.simulation import Simulation
-from tests.support.sailenv_client import original_client
+from tests.support.sailenv_client import clients_of, original_client
 from tests.support.waiting import until
 
 RANDOM_BYTES = 1_000_000
@@ -37,7 +36,7 @@ def unharmed(simulation: Simulation, limits: GatewayLimits) -> Iterator[GatewayS
     with GatewayServer(simulation, port=0, limits=limits) as server:
         yield server
         until(lambda: server.clients == 0, "every peer to be gone", 20.0)
-        until(lambda: not _agents(simulation), "the agents to be gone", 10.0)
+        until(lambda: not clients_of(simulation), "the agents to be gone", 10.0)
         goal = simulation.sim_time_ns + 100_000_000
         until(lambda: simulation.sim_time_ns > goal, "simulated time to go on", 20.0)
         with original_client(server.port, width=32, height=24) as client:
@@ -148,9 +147,9 @@ def test_a_peer_that_takes_nothing_is_gone_before_its_answer_is_due(
     ):
         peer.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         peer.sendall(hello(1024, 1024) + b"\x00\x3d" * 500)
-        until(lambda: _agents(blank_simulation), "it to be registered")
+        until(lambda: clients_of(blank_simulation), "it to be registered")
         until(lambda: not gateway.clients, "it to be disconnected", 10.0)
-        until(lambda: not _agents(blank_simulation), "its agent to be gone")
+        until(lambda: not clients_of(blank_simulation), "its agent to be gone")
     assert "neither answered nor took anything for 1 s" in caplog.text
 
 
@@ -178,7 +177,9 @@ def test_a_crowd(blank_simulation: Simulation, caplog: pytest.LogCaptureFixture)
                 peer.sendall(hello())
             except ConnectionError:
                 continue
-        until(lambda: 0 < len(_agents(blank_simulation)) <= LIMITS.per_address, "some to register")
+        until(
+            lambda: 0 < len(clients_of(blank_simulation)) <= LIMITS.per_address, "some to register"
+        )
         # The one of the other address counts until the gateway has read that it went.
         until(lambda: gateway.clients <= LIMITS.per_address, "the other to be seen to have gone")
     assert sum("refuses a connection" in message for message in caplog.messages) == 1
@@ -198,8 +199,3 @@ def test_random_bytes(gateway: GatewayServer) -> None:
             except ConnectionError:
                 continue
             assert is_disconnected(peer)
-
-
-def _agents(simulation: Simulation) -> list[str]:
-    names = [agent.name for agent in simulation.info.agents]
-    return [name for name in names if name.startswith(AGENT_PREFIX)]

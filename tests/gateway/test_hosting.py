@@ -15,6 +15,7 @@ import pytest
 from sailenv_ros.errors import AddressInUse, InvalidRequest, UnknownName
 from sailenv_ros.gateway import GatewayServer, gateway_server
 from sailenv_ros.simulation import Simulation
+from tests.support.ports import free_port
 from tests.support.sailenv_client import original_client
 
 # A process in which any import of ROS fails.
@@ -30,9 +31,7 @@ sys.exit(main(sys.argv[1:]))
 @pytest.fixture
 def viewer_port() -> int:
     """A port for the web viewer that nobody uses."""
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port: int = probe.getsockname()[1]
-    return port
+    return free_port()
 
 
 @pytest.fixture

@@ -12,14 +12,13 @@ import pytest
 
 from sailenv_ros.frame.pictures.colours import grey_depth
 from sailenv_ros.gateway import GatewayServer
-from sailenv_ros.gateway.session import AGENT_PREFIX
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import colour_instances
 from sailenv_ros.types.views import FIVE_VIEWS
-from tests.support.sailenv_client import OriginalAgent, original_client
+from tests.support.sailenv_client import OriginalAgent, clients_of, original_client
 from tests.support.upload_files import box_zip
 from tests.support.waiting import until
 
@@ -149,7 +148,7 @@ def test_clients_are_agents_of_their_own(lockstep: Simulation, gateway: GatewayS
     for thread in threads:
         thread.join(60.0)
     assert not wrong
-    until(lambda: not _clients(lockstep), "the agents to be gone", 10.0)
+    until(lambda: not clients_of(lockstep), "the agents to be gone", 10.0)
 
 
 @pytest.mark.usefixtures("quiet")
@@ -178,7 +177,7 @@ def test_an_unknown_scene_is_told_in_words(
 def test_poses_are_unitys(lockstep: Simulation, client: Any) -> None:
     """What is set is read back, and is where Unity's axes say in ours."""
     client.toggle_follow()
-    agent = _clients(lockstep)[0]
+    agent = clients_of(lockstep)[0]
     client.set_position((1.0, 2.0, 3.0))
     client.set_rotation((10.0, 200.0, 30.0))
     assert client.get_position() == pytest.approx((1.0, 2.0, 3.0))
@@ -302,11 +301,6 @@ def test_surroundings_can_be_changed(lockstep: Simulation, client: Any) -> None:
     assert lockstep.info.environment.background_colour == pytest.approx((1.0, 0.0, 0.0))
     client.change_main_camera_clear_flags(-1, 0, 0)
     assert lockstep.info.environment.background == "sky"
-
-
-def _clients(simulation: Simulation) -> list[str]:
-    names = [agent.name for agent in simulation.info.agents]
-    return [name for name in names if name.startswith(AGENT_PREFIX)]
 
 
 def _pixels_of(client: Any, colour: np.ndarray) -> int:

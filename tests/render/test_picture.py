@@ -39,6 +39,10 @@ DIM = Environment(
     sky_zenith=(0.1, 0.2, 0.4), sky_horizon=(0.3, 0.35, 0.4), sky_ground=(0.1, 0.1, 0.1)
 )
 UNIFORM = Environment(ambient=(0.0, 0.0, 0.0), sky_zenith=GREY, sky_horizon=GREY, sky_ground=GREY)
+DARK = Environment(
+    ambient=(0, 0, 0), sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0)
+)
+MATT = model_of(WALL, base_colour=(0.5, 0.5, 0.5, 1), roughness=1.0)
 
 
 @pytest.mark.parametrize("roughness", [0.1, 0.5, 1.0])
@@ -56,25 +60,17 @@ def test_white_furnace(render: Render, roughness: float, metallic: float) -> Non
 def test_a_lambertian_wall_under_a_lamp(render: Render) -> None:
     """Head-on at 2 m from a lamp of 8 W/sr: radiance albedo/pi · 8/4, less what is reflected."""
     lamp = Light(name="lamp", type="point", intensity=8.0, position_m=(1.0, 0, 0), range_m=1000.0)
-    grey = model_of(WALL, base_colour=(0.5, 0.5, 0.5, 1), roughness=1.0)
-    dark = Environment(
-        ambient=(0, 0, 0), sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0)
-    )
-    scene = snapshot_of([Thing(grey, Pose((3.0, 0, 0)))], lights=(lamp,), environment=dark)
+    scene = snapshot_of([Thing(MATT, Pose((3.0, 0, 0)))], lights=(lamp,), environment=DARK)
     rgb = render(scene, camera_at(width=97, height=73), "rgb")["rgb"]
     assert linear(rgb[36, 48]).mean() == pytest.approx(0.5 / np.pi * 2.0, rel=0.06)
 
 
 def test_light_is_linear_in_intensity(render: Render) -> None:
     """Half the lamp gives half the radiance, to the picture's 8 bits."""
-    grey = model_of(WALL, base_colour=(0.5, 0.5, 0.5, 1), roughness=1.0)
-    dark = Environment(
-        ambient=(0, 0, 0), sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0)
-    )
     seen = []
     for intensity in (1.0, 0.5):
         sun = Light(name="sun", type="directional", direction=(1, 0, 0), intensity=intensity)
-        scene = snapshot_of([Thing(grey, Pose((3.0, 0, 0)))], lights=(sun,), environment=dark)
+        scene = snapshot_of([Thing(MATT, Pose((3.0, 0, 0)))], lights=(sun,), environment=DARK)
         seen.append(linear(render(scene, camera_at(), "rgb")["rgb"]).mean())
     assert seen[1] / seen[0] == pytest.approx(0.5, rel=0.02)
 

@@ -32,6 +32,7 @@ from tests.support.tiny_scenes import (
     snapshot_of,
     two_instants,
     wall_mesh,
+    white_furnace,
 )
 
 OFF = PictureSettings(occlusion_strength=0.0, smooth_edges=False)
@@ -103,14 +104,7 @@ def test_ground_truth_knows_nothing_of_the_picture(render: Render) -> None:
 
 def test_a_white_furnace_is_uniform_without_occlusion(render: Render) -> None:
     """White boxes before a white wall in uniform light cannot be seen."""
-    grey = (0.3, 0.3, 0.3)
-    uniform = Environment(sky_zenith=grey, sky_horizon=grey, sky_ground=grey)
-    white = {"base_colour": (1, 1, 1, 1), "roughness": 1.0}
-    things = [
-        Thing(model_of(wall_mesh(60, 60), **white), Pose((3.0, 0, 0))),
-        Thing(model_of(box_mesh(0.7), **white), Pose.from_rpy_deg((2.7, 0, 0), (20, 30, 40))),
-    ]
-    scene = snapshot_of(things, lights=(), environment=uniform)
+    scene = white_furnace()
     plain, dark = (
         render(scene, replace(camera_at(), picture=settings), "rgb")["rgb"].astype(int)
         for settings in (OFF, replace(OFF, occlusion_strength=1.0, occlusion_radius_m=0.5))

@@ -21,12 +21,12 @@ from sailenv_ros.types.views import LIT_VIEWS, RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import (
     Thing,
-    box_mesh,
     camera_at,
     model_of,
     snapshot_of,
     two_instants,
     wall_mesh,
+    white_furnace,
 )
 
 PLAIN = PictureSettings(occlusion_strength=0.0, smooth_edges=False)
@@ -140,13 +140,7 @@ def test_two_threads_make_what_one_makes(size: tuple[int, int]) -> None:
 
 def test_occlusion_means_the_same(render: Render) -> None:
     """As dark in a corner with samples as without, to a few values: radius and strength stay."""
-    uniform = Environment(sky_zenith=GREY, sky_horizon=GREY, sky_ground=GREY)
-    white = {"base_colour": (1, 1, 1, 1), "roughness": 1.0}
-    things = [
-        Thing(model_of(wall_mesh(60, 60), **white), Pose((3.0, 0, 0))),
-        Thing(model_of(box_mesh(0.7), **white), Pose.from_rpy_deg((2.7, 0, 0), (20, 30, 40))),
-    ]
-    scene = snapshot_of(things, lights=(), environment=uniform)
+    scene = white_furnace()
     deep = {"occlusion_strength": 1.0, "occlusion_radius_m": 0.5}
     one, many = (
         render(scene, sampled(camera_at(), times, **deep), "rgb")["rgb"].astype(int)

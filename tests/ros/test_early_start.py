@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import socket
 import subprocess
 import sys
 import threading
@@ -14,6 +13,7 @@ import pytest
 
 from sailenv_msgs.srv import GetPose, Step
 from sailenv_ros.types.views import FIVE_VIEWS
+from tests.support.ports import free_port
 from tests.support.ros_probe import Probe
 from tests.support.viewer_socket import ViewerSocket
 from tests.support.waiting import until
@@ -75,12 +75,6 @@ def program(folder: Path, text: str) -> Path:
     file.write_text(f"#!/bin/sh\n{text}\n")
     file.chmod(0o755)
     return file
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port: int = probe.getsockname()[1]
-    return port
 
 
 async def frame_in_a_browser(port: int) -> set[str]:

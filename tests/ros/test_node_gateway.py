@@ -6,6 +6,7 @@ import socket
 
 import pytest
 
+from tests.support.ports import free_port
 from tests.support.sailenv_client import original_client
 from tests.support.sim_node_process import NodeProcess
 from tests.support.waiting import until
@@ -13,15 +14,9 @@ from tests.support.waiting import until
 pytestmark = pytest.mark.ros
 
 
-def _free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port: int = probe.getsockname()[1]
-    return port
-
-
 def test_the_node_serves_the_original_client() -> None:
     """The log says where, a frame comes, and the node ends with a client still there."""
-    port = _free_port()
+    port = free_port()
     with NodeProcess("/gate", gateway__port=port) as node:
         assert f"connect to 127.0.0.1, port {port}" in node.log
         with original_client(port, width=32, height=24) as agent:

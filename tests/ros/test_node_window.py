@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 from collections.abc import Iterator
 
 import pytest
@@ -10,6 +9,7 @@ from playwright.sync_api import Browser
 
 from sailenv_msgs.srv import GetPose
 from tests.support.browser import OpenPage, chromium
+from tests.support.ports import free_port
 from tests.support.ros_probe import Probe
 from tests.support.sim_node_process import NodeProcess
 
@@ -25,15 +25,9 @@ def browser() -> Iterator[Browser]:
         yield browser
 
 
-def _free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port: int = probe.getsockname()[1]
-    return port
-
-
 def test_keys_in_the_browser_move_what_ros_agents_see_from(browser: Browser) -> None:
     """The log says where the page is; Tab and W there move the agent that follows the mover."""
-    port = _free_port()
+    port = free_port()
     small = {"agent__width": 64, "agent__height": 48}
     with NodeProcess(NAMESPACE, viewer__port=port, **small) as node, Probe(NAMESPACE) as probe:
         url = f"http://127.0.0.1:{port}/"

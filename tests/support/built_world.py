@@ -6,13 +6,15 @@ from collections.abc import Mapping
 from contextlib import closing
 from typing import Any
 
+import numpy as np
+
 from sailenv_ros.assets import AssetLibrary, load_categories
 from sailenv_ros.scene import SceneSpec
 from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.world.build import build_world
 from sailenv_ros.world.world import World
 
-__all__ = ["built_snapshot", "built_world"]
+__all__ = ["built_snapshot", "built_world", "corners_of"]
 
 
 def built_world(scene: Mapping[str, Any], assets: AssetLibrary | None = None) -> World:
@@ -30,3 +32,15 @@ def built_snapshot(scene: Mapping[str, Any]) -> WorldSnapshot:
     """Return how a scene's world begins."""
     with closing(built_world(scene)) as world:
         return world.snapshot()
+
+
+def corners_of(world: World, *names: str) -> np.ndarray:
+    """Return the corners of all triangles of some objects in the world [m]."""
+    found = []
+    for _, body in world.numbered_bodies:
+        if body.placement.name in names:
+            matrix = body.world_from_body()
+            for part in body.placement.asset.model.parts:
+                points = part.mesh.positions[part.mesh.triangles].reshape(-1, 3)
+                found.append(points @ matrix[:3, :3].T + matrix[:3, 3])
+    return np.concatenate(found)

@@ -18,14 +18,5 @@ def lockstep_core(
     `paths` are folders of scene files beside the package's.
     """
     return SynchronousSimulation(
-        SceneLibrary(paths),
-        scene,
-        **{
-            "renderer": BlankRenderer(),
-            "mode": "lockstep",
-            "real_time_factor": 1.0,
-            "seed": 0,
-            "paused": False,
-            **settings,
-        },
+        SceneLibrary(paths), scene, **{"renderer": BlankRenderer(), **settings}
     )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.behaviours import RunningBehaviour, start_behaviour
@@ -16,7 +18,19 @@ from sailenv_ros.world.world import World
 from tests.support.blocks import furniture
 from tests.support.stick_person import stick_person
 
-__all__ = ["CATEGORIES", "STICK", "box", "chair", "one", "person", "placed", "world_of"]
+__all__ = [
+    "CATEGORIES",
+    "STICK",
+    "box",
+    "bytes_of",
+    "chair",
+    "nearest_crossing",
+    "one",
+    "person",
+    "placed",
+    "until_activity",
+    "world_of",
+]
 
 CATEGORIES = load_categories()
 STICK = stick_person()
@@ -78,3 +92,35 @@ def one(world: World, name: str) -> PersonBody:
     found = next(body for body in world.bodies if body.placement.name == name)
     assert isinstance(found, PersonBody)
     return found
+
+
+def until_activity(
+    world: World, body: PersonBody, word: str, *, steps: int = 12, most: int = 900
+) -> list[str]:
+    """Step until an activity; return the activities on the way."""
+    seen = []
+    for _ in range(most):
+        world.step(steps)
+        seen.append(body.walker.activity)
+        if seen[-1] == word:
+            break
+    return list(dict.fromkeys(seen))
+
+
+def nearest_crossing(world: World, first: PersonBody, second: PersonBody) -> float:
+    """Step until two who have set out stand; return how near they have come to each other [m]."""
+    nearest = 9.0
+    for _ in range(600):
+        world.step(12)
+        between = np.subtract(first.pose().position_m, second.pose().position_m)
+        nearest = min(nearest, float(np.hypot(*between[:2])))
+        if first.walker.activity == second.walker.activity == "standing":
+            break
+    return nearest
+
+
+def bytes_of(world: World) -> tuple[bytes, ...]:
+    """Return where all is, and the shapes of those who have some."""
+    states = world.states()
+    shapes = [shape.meshes[0].positions.tobytes() for shape in states.deformations.values()]
+    return states.positions.tobytes(), *shapes

@@ -10,6 +10,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from sailenv_ros.gateway.session import AGENT_PREFIX
+from sailenv_ros.simulation import Simulation
+
 ANSWER_S = 60.0
 """Time that a test waits for an answer [s]."""
 
@@ -40,3 +43,9 @@ def original_client(port: int, **settings: Any) -> Iterator[Any]:
         client.delete()
     finally:
         client.socket.close()
+
+
+def clients_of(simulation: Simulation) -> list[str]:
+    """Return the names of the agents that clients of a gateway have."""
+    names = [agent.name for agent in simulation.info.agents]
+    return [name for name in names if name.startswith(AGENT_PREFIX)]

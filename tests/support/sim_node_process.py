@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-import signal
-import subprocess
-import sys
-import threading
 from pathlib import Path
 
+from tests.support.tool_process import LoggedProcess
 from tests.support.waiting import until
 
 SEGMENT_MARK = f"fastrtps_{'[0-9a-f]' * 16}_el"
@@ -19,7 +16,7 @@ READY = "to see:"
 """Stands in the line that the node logs once everything is there."""
 
 
-class NodeProcess:
+class NodeProcess(LoggedProcess):
     """A child process; a context manager that ends it.
 
     `arguments` go before ``--ros-args``, `remaps` after it, `parameters` as ``-p``.
@@ -47,18 +44,13 @@ class NodeProcess:
         for name, value in {**defaults, **parameters}.items():
             # Keywords cannot hold dots: agent__width stands for agent.width.
             ros += ["-p", f"{name.replace('__', '.')}:={json.dumps(value)}"]
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "sailenv_ros.ros.nodes.sim_node", *arguments, *ros],
-            stderr=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            text=True,
+        super().__init__(
+            "sim_node",
+            (*arguments, *ros),
             pass_fds=pass_fds,
             start_new_session=True,
             env={**os.environ, **(environment or {})},
         )
-        self.lines: list[str] = []
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
         if ready:
             try:
                 self.await_ready()
@@ -66,21 +58,9 @@ class NodeProcess:
                 self.close()  # nobody else could
                 raise
 
-    @property
-    def pid(self) -> int:
-        return self._process.pid
-
-    @property
-    def alive(self) -> bool:
-        return self._process.poll() is None
-
     def await_ready(self) -> None:
-        until(lambda: self._said(READY) or not self.alive, f"{self.namespace} to be ready", 60.0)
+        until(lambda: self.said(READY) or not self.alive, f"{self.namespace} to be ready", 60.0)
         assert self.alive, self.log
-
-    @property
-    def log(self) -> str:
-        return "\n".join(self.lines)
 
     def segments(self) -> set[Path]:
         """Segments that this process itself made (it maps those of its peers as well)."""
@@ -95,37 +75,6 @@ class NodeProcess:
 
     def signal(self, number: int) -> None:
         self._process.send_signal(number)
-
-    def status(self, timeout_s: float = 20.0) -> int:
-        """Wait for the end; return the exit status."""
-        status = self._process.wait(timeout_s)
-        self._reader.join(5.0)
-        return status
-
-    def close(self) -> None:
-        if self.alive:
-            self.signal(signal.SIGTERM)
-            try:
-                self.status()
-            except subprocess.TimeoutExpired:
-                self._process.kill()
-                self.status()
-        if self._process.stderr is not None:
-            self._process.stderr.close()
-
-    def __enter__(self) -> NodeProcess:
-        return self
-
-    def __exit__(self, *exc: object) -> None:
-        self.close()
-
-    def _said(self, text: str) -> bool:
-        return any(text in line for line in self.lines)
-
-    def _read(self) -> None:
-        assert self._process.stderr is not None
-        for line in self._process.stderr:
-            self.lines.append(line.rstrip("\n"))
 
 
 def _inode(path: Path) -> int:

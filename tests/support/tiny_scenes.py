@@ -185,3 +185,15 @@ def two_instants() -> tuple[WorldSnapshot, WorldSnapshot, Camera, Camera]:
     after = snapshot_of(moved(things, *ends), contents=contents, time_ns=FRAME_NS)
     now = camera_at(Pose.from_rpy_deg((0.0, 0.05, 0.0), (1, 2, 3)), width=203, height=151)
     return before, after, camera_at(width=203, height=151), now
+
+
+def white_furnace() -> WorldSnapshot:
+    """A white box before a white wall, in uniform light."""
+    grey = (0.3, 0.3, 0.3)
+    uniform = Environment(sky_zenith=grey, sky_horizon=grey, sky_ground=grey)
+    white = {"base_colour": (1, 1, 1, 1), "roughness": 1.0}
+    things = [
+        Thing(model_of(wall_mesh(60, 60), **white), Pose((3.0, 0, 0))),
+        Thing(model_of(box_mesh(0.7), **white), Pose.from_rpy_deg((2.7, 0, 0), (20, 30, 40))),
+    ]
+    return snapshot_of(things, lights=(), environment=uniform)

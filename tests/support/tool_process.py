@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Mapping, Sequence
+from typing import Any, Self
 
 from tests.support.waiting import until
 
@@ -58,27 +59,20 @@ def _arguments(namespace: str, parameters: Mapping[str, object]) -> list[str]:
     return words
 
 
-class ToolProcess:
-    """A node of this package as a child process; a context manager that ends it."""
+class LoggedProcess:
+    """A node of this package as a child process, whose log is read as it comes."""
 
-    def __init__(self, node: str, namespace: str, ready: str, **parameters: object) -> None:
+    def __init__(self, node: str, words: Sequence[str], **settings: Any) -> None:
         self._process = subprocess.Popen(
-            [
-                sys.executable,
-                "-m",
-                f"sailenv_ros.ros.nodes.{node}",
-                *_arguments(namespace, parameters),
-            ],
+            [sys.executable, "-m", f"sailenv_ros.ros.nodes.{node}", *words],
             stderr=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             text=True,
+            **settings,
         )
         self.lines: list[str] = []
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
-        if ready:
-            until(lambda: self.said(ready) or not self.alive, f"{node} to say {ready!r}", 60.0)
-            assert self.alive or self.said(ready), self.log
 
     @property
     def pid(self) -> int:
@@ -101,23 +95,41 @@ class ToolProcess:
         self._reader.join(5.0)
         return status
 
-    def end(self, number: int = signal.SIGINT) -> int:
-        """Ask for the end; return the exit status."""
-        self._process.send_signal(number)
-        return self.status()
-
-    def __enter__(self) -> ToolProcess:
-        return self
-
-    def __exit__(self, *exc: object) -> None:
+    def close(self) -> None:
+        """End it, whatever it does."""
         if self.alive:
-            self._process.kill()
-            self._process.wait(10.0)
+            self._process.send_signal(signal.SIGTERM)
+            try:
+                self.status(20.0)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self.status()
         self._reader.join(5.0)
         if self._process.stderr is not None:
             self._process.stderr.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
 
     def _read(self) -> None:
         assert self._process.stderr is not None
         for line in self._process.stderr:
             self.lines.append(line.rstrip("\n"))
+
+
+class ToolProcess(LoggedProcess):
+    """A recorder or player; a context manager that ends it."""
+
+    def __init__(self, node: str, namespace: str, ready: str, **parameters: object) -> None:
+        super().__init__(node, _arguments(namespace, parameters))
+        if ready:
+            until(lambda: self.said(ready) or not self.alive, f"{node} to say {ready!r}", 60.0)
+            assert self.alive or self.said(ready), self.log
+
+    def end(self, number: int = signal.SIGINT) -> int:
+        """Ask for the end; return the exit status."""
+        self._process.send_signal(number)
+        return self.status()

@@ -354,6 +354,13 @@ def test_exploring_is_rewarded_by_the_area_seen(make: Make) -> None:
     assert info["objects_seen"] <= info["objects"]
 
 
+def face(env: FixateEnv | RearrangeEnv, point: np.ndarray) -> None:
+    """Turn the eye towards a point."""
+    offset = point - np.array(env._eye_pose().position_m)
+    env._eye.yaw_deg = math.degrees(math.atan2(offset[1], offset[0]))
+    env._eye.pitch_deg = math.degrees(-math.atan2(offset[2], math.hypot(*offset[:2])))
+
+
 def test_each_object_is_rewarded_once(make: Make) -> None:
     env = make("Fixate", discrete=False, goal_objects=2, views=("rgb",))
     assert isinstance(env, FixateEnv)
@@ -363,9 +370,7 @@ def test_each_object_is_rewarded_once(make: Make) -> None:
     rewards, over = [], False
     for name in ("box", "box", "cot"):
         low, high = env.room.boxes[env.room.rows[name]]
-        offset = 0.5 * (low + high) - np.array(env._eye_pose().position_m)
-        env._eye.yaw_deg = math.degrees(math.atan2(offset[1], offset[0]))
-        env._eye.pitch_deg = math.degrees(-math.atan2(offset[2], math.hypot(*offset[:2])))
+        face(env, 0.5 * (low + high))
         observation, reward, over, _, info = env.step(np.zeros(2, np.float32))
         assert info["instance"] == env.room.ids[env.room.rows[name]]
         assert info["category"] == ("couch" if name == "box" else "bed")
@@ -394,8 +399,6 @@ def test_what_has_moved_is_told_by_pointing(make: Make) -> None:
     env._eye.pitch_deg = 60.0
     _, reward, over, _, info = env.step(4)
     assert (reward, over, info["wrong"]) == (-0.5, False, 1)
-    offset = moved[:3, 3] - np.array(env._eye_pose().position_m)
-    env._eye.yaw_deg = math.degrees(math.atan2(offset[1], offset[0]))
-    env._eye.pitch_deg = math.degrees(-math.atan2(offset[2], math.hypot(*offset[:2])))
+    face(env, moved[:3, 3])
     _, reward, over, _, info = env.step(4)
     assert (reward, over, info["found"]) == (1.0, True, 1)

@@ -10,7 +10,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from pycocotools import mask as coco_mask
@@ -23,6 +23,7 @@ from sailenv_ros.errors import InvalidRequest, UnknownName, WriteFailed
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.run_lengths import run_lengths
 from sailenv_ros.types.views import VIEWS
+from tests.support.picture import read_picture as read
 from tests.support.recordings import write_noise
 
 pytestmark = pytest.mark.ros
@@ -35,12 +36,6 @@ VIEWS_HERE = tuple(view for view in VIEWS if view != "normals")
 def bag(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Frame]]:
     folder = tmp_path_factory.mktemp("exported") / "bag"
     return folder, write_noise(folder, COUNT, views=VIEWS_HERE)
-
-
-def read(path: Path) -> np.ndarray:
-    picture = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
-    assert picture is not None, path
-    return picture
 
 
 def test_png_views_are_the_frames_values(bag: tuple[Path, list[Frame]], tmp_path: Path) -> None:
@@ -89,19 +84,19 @@ def test_pycocotools_reads_the_annotations(bag: tuple[Path, list[Frame]], tmp_pa
             assert coco_mask.toBbox(encoded).tolist() == annotation["bbox"]
 
 
-@given(mask=arrays.arrays(np.bool_, st.tuples(st.integers(1, 40), st.integers(1, 40))))
-def test_run_lengths_are_those_of_pycocotools(mask: np.ndarray) -> None:
-    """Letter for letter what the reference encodes."""
-    expected = coco_mask.encode(np.asfortranarray(mask.astype(np.uint8)))["counts"]
-    assert run_lengths_text(run_lengths(mask)).encode() == expected
-
-
-@pytest.mark.parametrize("width", [100, 3000])
-def test_long_runs_are_those_of_pycocotools(width: int) -> None:
-    """Runs whose lengths take several letters, and differences below zero."""
+def long_runs(width: int) -> np.ndarray:
+    """A mask whose runs have lengths of several letters, and differences below zero."""
     mask = np.zeros((200, width), bool)
     mask[30:170, 20:-20] = True
     mask[100] = False
+    return mask
+
+
+@given(mask=arrays.arrays(np.bool_, st.tuples(st.integers(1, 40), st.integers(1, 40))))
+@example(mask=long_runs(100))
+@example(mask=long_runs(3000))
+def test_run_lengths_are_those_of_pycocotools(mask: np.ndarray) -> None:
+    """Letter for letter what the reference encodes."""
     expected = coco_mask.encode(np.asfortranarray(mask.astype(np.uint8)))["counts"]
     assert run_lengths_text(run_lengths(mask)).encode() == expected
 

@@ -27,6 +27,7 @@ from sailenv_ros.recording.writer import RecordingWriter
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
+from tests.support.picture import read_picture as read
 from tests.support.recordings import write_noise
 
 pytestmark = [pytest.mark.ros, pytest.mark.gl]
@@ -47,12 +48,6 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, list[F
             record_lockstep(simulation, writer, frames=COUNT, agents=["eye"], views=views)
         with RecordingReader(folder) as reader:
             yield folder, list(RecordedFrames(reader, "eye"))
-
-
-def read(path: Path) -> np.ndarray:
-    picture = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
-    assert picture is not None, path
-    return picture
 
 
 def kitti_flow(path: Path) -> tuple[np.ndarray, np.ndarray]:

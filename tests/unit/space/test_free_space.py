@@ -35,26 +35,27 @@ def middles(space: FreeSpace) -> tuple[np.ndarray, np.ndarray]:
     return x + (columns + 0.5) * side, y + (rows + 0.5) * side
 
 
-def test_a_box_keeps_the_radius_free_around_it() -> None:
-    """A cell is occupied just if its middle is nearer to the box than the radius."""
+def around_a_box() -> tuple[FreeSpace, tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """A map around a box, the middles of its cells, and how far they are from the box [m]."""
     box = BoxShape(half_extents_m=(0.33, 0.21, 0.4), centre_m=(0.21, -0.13, 0.4))
     space = map_free_space(solids(FLOOR, box), BODY)
     x, y = middles(space)
     beside = np.hypot(
         np.maximum(np.abs(x - 0.21) - 0.33, 0.0), np.maximum(np.abs(y + 0.13) - 0.21, 0.0)
     )
+    return space, (x, y), beside
+
+
+def test_a_box_keeps_the_radius_free_around_it() -> None:
+    """A cell is occupied just if its middle is nearer to the box than the radius."""
+    space, _, beside = around_a_box()
     assert np.array_equal(space.cells == OCCUPIED, beside < 0.2)
     assert np.array_equal(space.cells == FREE, beside >= 0.2)
 
 
 def test_clearance_is_never_more_than_there_is() -> None:
     """And at most two diagonals of a cell less."""
-    box = BoxShape(half_extents_m=(0.33, 0.21, 0.4), centre_m=(0.21, -0.13, 0.4))
-    space = map_free_space(solids(FLOOR, box), BODY)
-    x, y = middles(space)
-    beside = np.hypot(
-        np.maximum(np.abs(x - 0.21) - 0.33, 0.0), np.maximum(np.abs(y + 0.13) - 0.21, 0.0)
-    )
+    space, (x, y), beside = around_a_box()
     low, high = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
     edge = np.minimum.reduce([x - low[0], high[0] - x, y - low[1], high[1] - y])
     room = np.minimum(beside - BODY.radius_m, edge)

@@ -12,7 +12,15 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.types.model import Asset
 from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.placement import Placement
-from tests.support.peopled_worlds import box, one, person, placed, world_of
+from tests.support.peopled_worlds import (
+    box,
+    bytes_of,
+    nearest_crossing,
+    one,
+    person,
+    placed,
+    world_of,
+)
 
 PAWS = ("forepaw.L", "forepaw.R", "hindpaw.L", "hindpaw.R")
 
@@ -138,14 +146,7 @@ def test_animals_and_people_do_not_walk_through_each_other(dog: Asset) -> None:
     world.step(1)
     assert rex.walker.walk_to((1.5, 0.0))
     assert ben.walker.walk_to((-1.5, 0.0))
-    nearest = 9.0
-    for _ in range(600):
-        world.step(12)
-        between = np.subtract(rex.pose().position_m, ben.pose().position_m)
-        nearest = min(nearest, float(np.hypot(*between[:2])))
-        if rex.walker.activity == ben.walker.activity == "standing":
-            break
-    assert nearest > 0.35
+    assert nearest_crossing(world, rex, ben) > 0.35
     assert abs(ben.pose().position_m[0] - 1.5) > 0.5
     world.close()
 
@@ -293,8 +294,6 @@ def test_the_same_seed_gives_the_same_bytes(cat: Asset) -> None:
             placed("far", box("b", (0.3, 0.3, 0.5)), 2, 2),
         )
         world.step(900)
-        states = world.states()
-        shapes = [shape.meshes[0].positions.tobytes() for shape in states.deformations.values()]
-        found.append((states.positions.tobytes(), *shapes))
+        found.append(bytes_of(world))
         world.close()
     assert found[0] == found[1]

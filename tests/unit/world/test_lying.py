@@ -10,7 +10,7 @@ from sailenv_ros.world.beds import lanes_of
 from sailenv_ros.world.person_body import PersonBody
 from sailenv_ros.world.world import World
 from tests.support.blocks import furniture
-from tests.support.peopled_worlds import one, person, placed, world_of
+from tests.support.peopled_worlds import one, person, placed, until_activity, world_of
 
 MATTRESS_M, PILLOW_M = 0.45, 0.08
 
@@ -43,24 +43,13 @@ def surface(places: np.ndarray) -> np.ndarray:
     return np.where(on_bed, MATTRESS_M + PILLOW_M * on_pillow, -1.0)
 
 
-def go_on(world: World, body: PersonBody, word: str) -> list[str]:
-    """Step until an activity; return the activities on the way."""
-    seen = []
-    for _ in range(900):
-        world.step(12)
-        seen.append(body.walker.activity)
-        if seen[-1] == word:
-            break
-    return list(dict.fromkeys(seen))
-
-
 def test_one_lies_down_rests_and_gets_up() -> None:
     world = world_of(person("anna", 0.4, 1.6), placed("bed", bed(), 0.0, 0.0, 20.0, static=True))
     anna = one(world, "anna")
     world.step(1)
     assert anna.walker.beds() == ("bed",)
     assert anna.walker.lie_on("bed")
-    assert go_on(world, anna, "lying") == ["walking", "lying down", "lying"]
+    assert until_activity(world, anna, "lying") == ["walking", "lying down", "lying"]
     skin = skin_on(world, anna, "bed")
     depths = surface(skin) - skin[:, 2]
     assert depths.max() < 0.02
@@ -74,7 +63,7 @@ def test_one_lies_down_rests_and_gets_up() -> None:
     assert np.ptp(joints[[names.index("head"), names.index("root")], 2]) < 0.25
     assert anna.walker.beds() == ("bed",)  # it is her own
     anna.walker.get_up()
-    assert go_on(world, anna, "standing") == ["getting up", "standing"]
+    assert until_activity(world, anna, "standing") == ["getting up", "standing"]
     world.close()
 
 
@@ -83,7 +72,7 @@ def test_on_the_way_into_a_bed_the_body_stays_above_it() -> None:
     anna = one(world, "anna")
     world.step(1)
     assert anna.walker.lie_on("bed")
-    go_on(world, anna, "lying down")
+    until_activity(world, anna, "lying down")
     deepest, last, fastest = 0.0, None, 0.0
     for _ in range(200):
         world.step(8)
@@ -146,12 +135,23 @@ def test_two_have_room_on_a_wide_bed_and_a_third_has_not() -> None:
     assert ben.walker.lie_on("bed")
     assert carl.walker.beds() == ()
     for body in (anna, ben):
-        go_on(world, body, "lying")
+        until_activity(world, body, "lying")
         assert body.walker.activity == "lying"
     sides = [float(skin_on(world, body, "bed")[:, 1].mean()) for body in (anna, ben)]
     assert sides[0] > 0.2
     assert sides[1] < -0.2
     world.close()
+
+
+def lying_on(couch: Asset) -> tuple[World, PersonBody, np.ndarray]:
+    """A world where somebody lies on a couch, and where the skin is in the couch's frame [m]."""
+    world = world_of(person("anna", 1.6, 0.0), placed("couch", couch, 0.0, 0.0, static=True))
+    anna = one(world, "anna")
+    world.step(1)
+    assert anna.walker.lie_on("couch")
+    until_activity(world, anna, "lying")
+    skin = skin_on(world, anna, "couch")
+    return world, anna, skin
 
 
 def test_one_lies_along_a_couch() -> None:
@@ -165,12 +165,7 @@ def test_one_lies_along_a_couch() -> None:
             ((0.9, 0.12, 0.6), (0.0, -1.1, 0.0)),
         ],
     )
-    world = world_of(person("anna", 1.6, 0.0), placed("couch", couch, 0.0, 0.0, static=True))
-    anna = one(world, "anna")
-    world.step(1)
-    assert anna.walker.lie_on("couch")
-    go_on(world, anna, "lying")
-    skin = skin_on(world, anna, "couch")
+    world, _, skin = lying_on(couch)
     assert np.ptp(skin[:, 1]) > 1.6
     assert np.abs(skin[:, 1]).max() < 1.04  # between the arms
     assert skin[:, 0].min() > -0.27  # before the back
@@ -185,12 +180,7 @@ def test_heels_rest_where_toes_reach_the_arm_of_a_couch() -> None:
         [((0.9, 2.08, 0.42), (0.0, 0.0, 0.0))]
         + [((0.9, 0.12, 0.75), (0.0, side * 0.98, 0.0)) for side in (1.0, -1.0)],
     )
-    world = world_of(person("anna", 1.6, 0.0), placed("couch", couch, 0.0, 0.0, static=True))
-    anna = one(world, "anna")
-    world.step(1)
-    assert anna.walker.lie_on("couch")
-    go_on(world, anna, "lying")
-    skin = skin_on(world, anna, "couch")
+    world, anna, skin = lying_on(couch)
     assert np.abs(skin[:, 1]).max() < 0.92  # between the arms
     names, joints = anna.skeleton().joint_names, anna.skeleton().joints
     for side in "LR":

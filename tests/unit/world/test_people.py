@@ -20,7 +20,9 @@ from tests.support.peopled_worlds import (
     CATEGORIES,
     STICK,
     box,
+    bytes_of,
     chair,
+    nearest_crossing,
     one,
     person,
     placed,
@@ -137,14 +139,7 @@ def test_people_do_not_walk_through_each_other() -> None:
     world.step(1)
     assert anna.walker.walk_to((2.0, 0.0))
     assert ben.walker.walk_to((-2.0, 0.0))
-    nearest = 9.0
-    for _ in range(600):
-        world.step(12)
-        between = np.subtract(anna.pose().position_m, ben.pose().position_m)
-        nearest = min(nearest, float(np.hypot(*between[:2])))
-        if anna.walker.activity == ben.walker.activity == "standing":
-            break
-    assert nearest > 0.3
+    assert nearest_crossing(world, anna, ben) > 0.3
     assert anna.walker.problem or np.hypot(anna.pose().position_m[0] - 2.0, 0.0) < 0.1
     world.close()
 
@@ -191,9 +186,7 @@ def test_the_same_seed_gives_the_same_bytes() -> None:
             placed("seat", chair(), 0.0, -2.0, 90.0, static=True),
         )
         world.step(1500)
-        states = world.states()
-        shapes = [shape.meshes[0].positions.tobytes() for shape in states.deformations.values()]
-        found.append((states.positions.tobytes(), *shapes))
+        found.append(bytes_of(world))
         world.close()
     assert found[0] == found[1]
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -13,7 +15,7 @@ from sailenv_ros.world.placement import Placement
 from sailenv_ros.world.skin import contact_skin
 from sailenv_ros.world.world import World
 from tests.support.blocks import furniture
-from tests.support.peopled_worlds import box, one, person, placed, world_of
+from tests.support.peopled_worlds import box, one, person, placed, until_activity, world_of
 
 SEAT_M, BACK_M = 0.42, 0.85
 TRUNK = ("belly", "spine02", "spine03")
@@ -36,14 +38,7 @@ def with_cat(*others: Placement, piece: Asset | None = None, name: str = "cat_02
     return world
 
 
-def until(world: World, cat: PersonBody, word: str) -> list[str]:
-    seen = []
-    for _ in range(3000):
-        world.step(4)
-        seen.append(cat.walker.activity)
-        if seen[-1] == word:
-            break
-    return list(dict.fromkeys(seen))
+until = partial(until_activity, steps=4, most=3000)
 
 
 def skin_of(cat: PersonBody) -> np.ndarray:

@@ -13,6 +13,7 @@ from sailenv_ros.errors import InvalidRequest, SceneError
 from sailenv_ros.scene.loader import load_scene
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.world.world import World
+from tests.support.built_world import corners_of
 
 ROOM = """
 version: 1
@@ -41,14 +42,7 @@ def world_of(path: Path) -> World:
 
 def corners(world: World, *names: str) -> np.ndarray:
     """Return the sorted corners of all triangles of some objects in the world [m]."""
-    found = []
-    for _, body in world.numbered_bodies:
-        if body.placement.name in names:
-            matrix = body.world_from_body()
-            for part in body.placement.asset.model.parts:
-                points = part.mesh.positions[part.mesh.triangles].reshape(-1, 3)
-                found.append(points @ matrix[:3, :3].T + matrix[:3, 3])
-    points = np.concatenate(found)
+    points = corners_of(world, *names)
     return points[np.lexsort(points.round(5).T)]
 
 

@@ -67,14 +67,17 @@ def test_a_box_comes_to_rest_on_the_floor() -> None:
     assert height(world, 1) == pytest.approx(0.5, abs=2e-3)
 
 
+POST = solid(
+    BoxShape(half_extents_m=(0.5, 0.5, 1.0), centre_m=(0, 0, 1)), centre_of_mass_m=(0, 0, 1)
+)
+"""A box whose centre of mass is not its origin."""
+TURNED = Pose.from_rpy_deg((1, 2, 3), (20, 30, 40))
+
+
 def test_a_displaced_centre_of_mass_leaves_the_body_frame_alone() -> None:
     """Poses are of the body frame, wherever the centre of mass lies, also when turned."""
-    asset = solid(
-        BoxShape(half_extents_m=(0.5, 0.5, 1.0), centre_m=(0, 0, 1)), centre_of_mass_m=(0, 0, 1)
-    )
-    pose = Pose.from_rpy_deg((1, 2, 3), (20, 30, 40))
-    world = make_world(placed("post", asset=asset, pose=pose, gravity=False))
-    np.testing.assert_allclose(world.snapshot().world_from_body[0], pose.matrix(), atol=1e-12)
+    world = make_world(placed("post", asset=POST, pose=TURNED, gravity=False))
+    np.testing.assert_allclose(world.snapshot().world_from_body[0], TURNED.matrix(), atol=1e-12)
     moved = Pose.from_rpy_deg((-1, 0, 2), (0, 80, 10))
     world.put_body(1, moved)
     np.testing.assert_allclose(world.snapshot().world_from_body[0], moved.matrix(), atol=1e-12)
@@ -82,12 +85,8 @@ def test_a_displaced_centre_of_mass_leaves_the_body_frame_alone() -> None:
 
 def test_states_are_those_of_the_snapshot_and_velocities_their_differences() -> None:
     """The same matrices bit for bit; the origin's velocity is not that of the centre of mass."""
-    asset = solid(
-        BoxShape(half_extents_m=(0.5, 0.5, 1.0), centre_m=(0, 0, 1)), centre_of_mass_m=(0, 0, 1)
-    )
-    pose = Pose.from_rpy_deg((1, 2, 3), (20, 30, 40))
     spin = {"linear_velocity": (0.5, -1.0, 2.0), "angular_velocity": (0.3, 2.0, -1.0)}
-    thrown = replace(placed("post", asset=asset, pose=pose, gravity=False), **spin)
+    thrown = replace(placed("post", asset=POST, pose=TURNED, gravity=False), **spin)
     slab = replace(placed("slab", (5, 0, 0), static=True), scale=(2.0, 2.0, 2.0))
     world = make_world(thrown, slab)
     world.step(3)

@@ -16,6 +16,7 @@ from sailenv_content.generation.shells import Shell, shell_of
 from sailenv_ros.authoring.room_rules.random_stream import RandomStream
 from sailenv_ros.authoring.room_rules.rule_files import Rules, room_kinds, rules_of
 from sailenv_ros.simulation.scenes import SceneLibrary
+from tests.support.built_world import corners_of
 
 SEEDS = range(30)
 WALL_M = 0.12
@@ -124,7 +125,7 @@ def test_open_leaves_stand_where_the_plan_keeps_room_for_them(rules: Rules, tmp_
             if entry.get("open")
         ]
         for number, block in zip(open_doors, shell.leaves, strict=True):
-            points = corners(world, f"door {number} leaf")
+            points = corners_of(world, f"door {number} leaf")
             assert block.distance_m(points[:, :2]).max() < 0.1
             along = (points[:, :2] - (block.x, block.y)) @ block.axes()[0]
             assert along.min() < 0.1 - block.half_x
@@ -132,15 +133,3 @@ def test_open_leaves_stand_where_the_plan_keeps_room_for_them(rules: Rules, tmp_
             tried += 1
         world.close()
     assert tried >= 8
-
-
-def corners(world, name: str) -> np.ndarray:  # type: ignore[no-untyped-def]
-    """Corners of all triangles of an object in the world [m]."""
-    found = []
-    for _, body in world.numbered_bodies:
-        if body.placement.name == name:
-            matrix = body.world_from_body()
-            for part in body.placement.asset.model.parts:
-                points = part.mesh.positions[part.mesh.triangles].reshape(-1, 3)
-                found.append(points @ matrix[:3, :3].T + matrix[:3, 3])
-    return np.concatenate(found)
