@@ -39,8 +39,6 @@ SENSOR = {"name": "scan", "type": "lidar", "position": [0, 0, 0.2], "rate": 20}
 STEPS = 12
 STEP_M = 0.02
 MOST_TURNS = 4000
-NEIGHBOURS = [(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c]
-
 # As large as the wheels: what the map calls free, such as rugs of up to 2 cm, must be driven over.
 _BALL = '<geometry><sphere radius="0.05"/></geometry>'
 _WHEEL = '<geometry><cylinder radius="0.05" length="0.02"/></geometry>'

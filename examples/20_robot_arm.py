@@ -18,7 +18,6 @@ from PIL import Image
 from sailenv_ros import Simulation
 from sailenv_ros.types.geometry import Pose
 
-PANDA = "pybullet_data:franka_panda/panda.urdf"
 SCENE = """
 version: 1
 objects:

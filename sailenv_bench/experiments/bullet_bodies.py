@@ -48,7 +48,6 @@ class BulletBodies:
         self._kept: list[Model] = []
         self._textures: dict[int, tuple[Texture, int]] = {}
         self._warned: dict[int, Material] = {}
-        self.instance_of_body: NDArray[np.uint16] = np.zeros(1, np.uint16)
 
     def show(self, contents: SceneContents) -> None:
         """Make the bodies those of `contents`; what both have in common is kept.
@@ -71,11 +70,6 @@ class BulletBodies:
         # The number of an object is unique only while the object lives.
         self._kept = [drawn.model for drawn in contents.instances]
         self._contents = contents
-        highest = max((body for bodies in self._bodies for body in bodies), default=0)
-        table = np.zeros(1 + highest, np.uint16)
-        for bodies, instance_id in zip(self._bodies, contents.instance_ids.tolist(), strict=True):
-            table[bodies] = instance_id
-        self.instance_of_body = table
 
     def place(self, snapshot: WorldSnapshot, camera_from_world: NDArray[np.float64]) -> None:
         """Put every body where the camera at the origin sees it; `show` must have been called."""

@@ -138,18 +138,14 @@ class BakedScene:
             found = self._shapes[key] = (model, flat), shape_of(model, scale, flat)
         return found[1]
 
-    def albedo_with(self, painted: Mapping[int, Model]) -> Floats:
-        """Return (P, 3) float32: the albedo of the patches where some objects look otherwise.
+    def looks_with(self, painted: Mapping[int, Model]) -> tuple[Floats, Floats]:
+        """Return albedo and emission, (P, 3) float32 each, of the patches.
 
         Parameters
         ----------
         painted : mapping of int to Model
             Models of the same shape with other materials, by instance id.
         """
-        return self.looks_with(painted)[0]
-
-    def looks_with(self, painted: Mapping[int, Model]) -> tuple[Floats, Floats]:
-        """Return albedo and emission, (P, 3) float32 each, of the patches; see `albedo_with`."""
         albedo, emission = self.patches.albedo.copy(), self.patches.emission.copy()
         for id_, model in painted.items():
             own = self.patches.owners == id_
