@@ -94,8 +94,9 @@ BOARD_IN_WORLD = np.array(
 )
 """(4, 4): the board's middle; x to the right as it is read, y down, z away from the reader."""
 
-BLUR_TEXELS = 2.0
-"""Standard deviation of the boards' edges: pixels can tell where soft ones lie."""
+CHARUCO_BLUR, TAG_BLUR = 2.0, 1.0
+"""Standard deviation of edges [texels]: pixels can tell where soft ones lie. AprilTag's detector
+looks for an edge within few pixels, where all of it must lie in the largest tags."""
 
 Look = Callable[[Pose], NDArray[np.uint8]]
 """From the camera's pose to its picture, RGB."""
@@ -104,7 +105,7 @@ Look = Callable[[Pose], NDArray[np.uint8]]
 def charuco_texture() -> NDArray[np.uint8]:
     """Return the ChArUco board."""
     size = FINER * TEXELS
-    return blurred(np.asarray(charuco().generateImage((size, size)), np.uint8))
+    return blurred(np.asarray(charuco().generateImage((size, size)), np.uint8), CHARUCO_BLUR)
 
 
 def tags_texture() -> NDArray[np.uint8]:
@@ -118,16 +119,16 @@ def tags_texture() -> NDArray[np.uint8]:
         top, left = (module * (2 + (TAG_MODULES + 2) * k) for k in (row, column))
         tag = cv2.aruco.generateImageMarker(dictionary, number, size)
         texture[top : top + size, left : left + size] = tag
-    return blurred(texture)
+    return blurred(texture, TAG_BLUR)
 
 
-def blurred(texture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def blurred(texture: NDArray[np.uint8], blur: float) -> NDArray[np.uint8]:
     """Return a pattern of black and white in sRGB, whose edges are soft.
 
     The root of light passes alike from black to white on either side of an edge. Renderers filter
     textures in this measure, so an edge stays where it is, seen from near or from far.
     """
-    blur = BLUR_TEXELS * FINER
+    blur *= FINER
     root = cv2.GaussianBlur(texture / 255.0, (0, 0), blur, borderType=cv2.BORDER_REPLICATE)
     light = cv2.resize(root, (TEXELS, TEXELS), interpolation=cv2.INTER_AREA) ** 2
     encoded = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
