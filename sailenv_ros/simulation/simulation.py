@@ -29,7 +29,6 @@ from sailenv_ros.simulation.models.upload_queue import UploadQueue
 from sailenv_ros.simulation.operations import Operation
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.system.futures import wait_for
-from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.types.agents import WAITED_RATE, AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.lessons import LessonState
@@ -122,7 +121,6 @@ class Simulation(ListenedSimulation):
         Clock(mode, real_time_factor, paused=paused)  # refuses what a loop cannot begin with
         checked_light(light)
         agent = _own_agent(agent, width, height, intrinsics, listed_views(views), cameras)
-        keep_freed_memory(many_scenes=True)
         super().__init__(SimulationLoop())
         loop = self._loop
         self._own_agent = None if agent is None else agent.name

@@ -27,6 +27,10 @@ KEPT_BYTES = 256 * 2**20
 """Free memory at the heap's end that is kept."""
 
 
+_decided = False
+"""Whether `keep_freed_memory` was called."""
+
+
 def keep_freed_memory(*, many_scenes: bool = False) -> bool:
     """Have this process keep what it frees; False where the C library is not glibc.
 
@@ -39,6 +43,8 @@ def keep_freed_memory(*, many_scenes: bool = False) -> bool:
         leave no holes among what stays: after 40 rooms of 340 MiB with it, 436 MiB without. A
         frame of 640x480 takes as long, one of 1920x1080 2 % longer.
     """
+    global _decided
+    _decided = True
     largest_bytes = LARGEST_KEPT_OF_SCENES_BYTES if many_scenes else LARGEST_KEPT_BYTES
     try:
         mallopt = ctypes.CDLL(None).mallopt
@@ -52,11 +58,14 @@ def give_back_freed_memory() -> None:
     """Give back mapped files and, where the C library is glibc, what this process keeps free.
 
     In sim_node's way of keeping memory, twelve changes among the three rooms: 0.9 to 2.0 GiB with
-    it, 2.0 to 2.2 GiB without; it takes 55 ms at most.
+    it, 2.0 to 2.2 GiB without; it takes 55 ms at most. A process that has not said how it keeps
+    memory has many scenes from here on: before, while the first one is made, that costs time.
     """
     from sailenv_ros.system.mapped_file import give_back_pages  # needs NumPy, and commands do not
 
     give_back_pages()
+    if not _decided:
+        keep_freed_memory(many_scenes=True)
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).malloc_trim(0)
 

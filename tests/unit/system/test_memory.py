@@ -93,3 +93,32 @@ def test_freed_memory_is_given_back() -> None:
         [sys.executable, "-c", _FREED], capture_output=True, text=True, timeout=60, check=True
     )
     assert int(done.stdout) > 200
+
+
+_BLOCKS = """
+import ctypes, sys
+import numpy as np
+from sailenv_ros.system.memory import give_back_freed_memory, keep_freed_memory
+np.ones(4 << 20, np.uint8)  # glibc takes blocks of this size from its heap from now on
+if sys.argv[1] == "kept":
+    keep_freed_memory()
+if sys.argv[1] != "as it is":
+    give_back_freed_memory()
+class Info(ctypes.Structure):
+    _fields_ = [(f"number_{place}", ctypes.c_size_t) for place in range(10)]
+libc = ctypes.CDLL(None)
+libc.mallinfo2.restype = Info
+def blocks():
+    return libc.mallinfo2().number_3
+before = blocks()
+block = np.ones(2 << 20, np.uint8)
+print(blocks() - before)
+"""
+
+
+@pytest.mark.parametrize(("how", "of_its_own"), [("as it is", 0), ("kept", 0), ("given back", 1)])
+def test_once_memory_was_given_back_large_blocks_go_back_at_once(how: str, of_its_own: int) -> None:
+    """Unless the process has said how it keeps memory: scenes come and go from then on."""
+    command = [sys.executable, "-c", _BLOCKS, how]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    assert int(done.stdout) == of_its_own
