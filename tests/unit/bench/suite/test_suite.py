@@ -258,7 +258,13 @@ def test_ctrl_c_ends_the_command_and_its_part(trivial: Path, tmp_path: Path) -> 
         "from sailenv_ros.cli.main import main\nsys.exit(main(sys.argv[1:]))"
     )
     words = [sys.executable, "-c", code, "bench", "all", "-o", str(tmp_path / "out")]
-    running = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
+    running = subprocess.Popen(
+        words,
+        stderr=subprocess.PIPE,
+        text=True,
+        # A shell has its background jobs ignore Ctrl-C, and these tests may be one.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     pid = trivial / "pid"
     until(lambda: pid.exists() and pid.read_text().endswith("."), "the part to begin", 60.0)
     running.send_signal(signal.SIGINT)
