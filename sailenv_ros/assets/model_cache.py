@@ -159,10 +159,10 @@ class _Unpacker:
 
     def _made(self, kind: str, told: dict[str, Any]) -> object:
         made = _KINDS[kind](**{name: self._value(value) for name, value in told.items()})
-        own = any(isinstance(value, dict) and "array" in value for value in told.values())
-        if kind != "Material" or self._shared is None or own:
+        if kind != "Material" or self._shared is None:
             return made
-        return _materials.setdefault(json.dumps(told), made)
+        own = any(isinstance(value, dict) and "array" in value for value in told.values())
+        return made if own else _materials.setdefault(json.dumps(told), made)
 
     def _value(self, told: Any) -> Any:
         if isinstance(told, list):

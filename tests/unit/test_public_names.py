@@ -2,20 +2,10 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 import pytest
 
 import sailenv_ros
-
-
-def run(code: str) -> str:
-    """Run a program of its own; return what it prints."""
-    result = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    return result.stdout.strip()
+from tests.support.programs import run
 
 
 def test_the_public_names_are_these() -> None:

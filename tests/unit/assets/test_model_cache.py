@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
@@ -24,6 +22,7 @@ from sailenv_ros.assets.surfaces import surface_catalogue
 from sailenv_ros.errors import AssetError
 from sailenv_ros.system.array_cache import array_folder
 from sailenv_ros.types.model import Asset
+from tests.support.programs import run
 
 
 @pytest.fixture(scope="module")
@@ -180,9 +179,3 @@ def test_a_kept_piece_needs_neither_scipy_nor_its_family() -> None:
     code += "FamilySource().load('chest~dresser:1')\n"
     code += "print(*(name in sys.modules for name in ('scipy', 'sailenv_content.families.kinds')))"
     assert [run(code) for _ in range(2)] == ["True True", "False False"]
-
-
-def run(code: str) -> str:
-    """Run a program of its own; return what it prints."""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    return done.stdout.strip()

@@ -8,6 +8,8 @@ import sys
 
 import pytest
 
+from tests.support.programs import run
+
 COUNT_FAULTS = """
 import resource, sys
 import numpy as np
@@ -31,8 +33,7 @@ print(faults() - before)
 
 def faults(how: str) -> int:
     """Count the page faults of making big arrays, in a process of its own."""
-    command = [sys.executable, "-c", COUNT_FAULTS, how]
-    return int(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    return int(run(COUNT_FAULTS, how))
 
 
 def test_kept_memory_is_not_faulted_in_again() -> None:
@@ -96,29 +97,22 @@ def test_freed_memory_is_given_back() -> None:
 
 
 _BLOCKS = """
-import ctypes, sys
+import sys
 import numpy as np
 from sailenv_ros.system.memory import give_back_freed_memory, keep_freed_memory
+from tests.support.allocator import allocations
 np.ones(4 << 20, np.uint8)  # glibc takes blocks of this size from its heap from now on
 if sys.argv[1] == "kept":
     keep_freed_memory()
 if sys.argv[1] != "as it is":
     give_back_freed_memory()
-class Info(ctypes.Structure):
-    _fields_ = [(f"number_{place}", ctypes.c_size_t) for place in range(10)]
-libc = ctypes.CDLL(None)
-libc.mallinfo2.restype = Info
-def blocks():
-    return libc.mallinfo2().number_3
-before = blocks()
+before = allocations().hblks
 block = np.ones(2 << 20, np.uint8)
-print(blocks() - before)
+print(allocations().hblks - before)
 """
 
 
 @pytest.mark.parametrize(("how", "of_its_own"), [("as it is", 0), ("kept", 0), ("given back", 1)])
 def test_once_memory_was_given_back_large_blocks_go_back_at_once(how: str, of_its_own: int) -> None:
     """Unless the process has said how it keeps memory: scenes come and go from then on."""
-    command = [sys.executable, "-c", _BLOCKS, how]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
-    assert int(done.stdout) == of_its_own
+    assert int(run(_BLOCKS, how)) == of_its_own

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import gc
 import math
 import tracemalloc
@@ -22,6 +21,7 @@ from sailenv_ros.types.model import (
 )
 from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.collision import build_collision, hulls_forgotten
+from tests.support.allocator import allocations
 
 SLAB = BoxShape(half_extents_m=(2.0, 2.0, 0.1), centre_m=(0.0, 0.0, -0.1))
 PYRAMID = ConvexShape(
@@ -144,30 +144,17 @@ def test_hulls_of_compounds_that_do_not_come_again_keep_no_memory() -> None:
     dice = np.random.default_rng(2)
     hulls = [ConvexShape(points=dice.normal(size=(100, 3))) for _ in range(201)]
     _hits([SLAB, hulls[0]], [])
-    before = _allocated()
+    before = allocations().uordblks
     for hull in hulls[1:]:
         _hits([SLAB, hull], [])
     gc.collect()
-    assert _allocated() - before < 400_000
-
-
-class _Allocated(ctypes.Structure):
-    """Of glibc's `mallinfo2`; the eighth number is what is in use [B]."""
-
-    _fields_ = [(f"number_{place}", ctypes.c_size_t) for place in range(10)]
+    assert allocations().uordblks - before < 400_000
 
 
 def test_bodies_of_hulls_are_made_without_a_word(capfd: pytest.CaptureFixture[str]) -> None:
     """PyBullet says it on standard error if it looks for a hull's file that is gone."""
     _hits([SLAB, PYRAMID], [])
     assert capfd.readouterr() == ("", "")
-
-
-def _allocated() -> int:
-    """Return what the C library has allocated on the heap of the main thread [B]."""
-    libc = ctypes.CDLL(None)
-    libc.mallinfo2.restype = _Allocated
-    return int(libc.mallinfo2().number_7)
 
 
 def _grown(bodies: list[list[CollisionShape]]) -> int:
