@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 import resource
 import subprocess
 import sys
 
 import pytest
 
+from tests.support import allocator
 from tests.support.programs import run
 
 COUNT_FAULTS = """
@@ -96,11 +98,11 @@ def test_freed_memory_is_given_back() -> None:
     assert int(done.stdout) > 200
 
 
-_BLOCKS = """
+# The package may be an installed one, beside which no `tests` stand: the program brings its own.
+_BLOCKS = f"""{inspect.getsource(allocator)}
 import sys
 import numpy as np
 from sailenv_ros.system.memory import give_back_freed_memory, keep_freed_memory
-from tests.support.allocator import allocations
 np.ones(4 << 20, np.uint8)  # glibc takes blocks of this size from its heap from now on
 if sys.argv[1] == "kept":
     keep_freed_memory()
