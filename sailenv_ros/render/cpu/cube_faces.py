@@ -226,7 +226,10 @@ def _mean_steps(places: Doubles, axis: int) -> Doubles:
 def _tiles(
     x: NDArray[np.float32], y: NDArray[np.float32], face: NDArray[np.uint8]
 ) -> NDArray[np.void]:
-    """Return (tile rows, tile groups) LENS_TILES."""
+    """Return (tile rows, tile groups) LENS_TILES, of their rows and the next one.
+
+    Bands of fine samples end with the first row of the next tile.
+    """
     high, wide = LENS_TILE_SHAPE
     group = LENS_GROUP_TILES * wide
     rows, groups = -(-x.shape[0] // high), -(-x.shape[1] // group)
@@ -235,7 +238,10 @@ def _tiles(
     def split(values: NDArray[Any], filling: float) -> NDArray[Any]:
         padded = np.pad(values, widths, constant_values=filling)
         grouped = padded.reshape(rows, high, groups, LENS_GROUP_TILES, wide)
-        return grouped.transpose(1, 4, 0, 2, 3).reshape(high * wide, rows, groups, LENS_GROUP_TILES)
+        own = grouped.transpose(1, 4, 0, 2, 3)
+        below = np.full_like(own[:1], filling)
+        below[:, :, :-1] = own[:1, :, 1:]
+        return np.concatenate([own, below]).reshape(-1, rows, groups, LENS_GROUP_TILES)
 
     places = [split(values, np.nan) for values in (x, y)]
     bits = np.left_shift(1, split(face, 0), dtype=np.int32)

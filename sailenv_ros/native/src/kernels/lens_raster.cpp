@@ -61,15 +61,32 @@ struct PlaceFunction {
 
     explicit PlaceFunction(const float* f) : a(f[0]), b(f[1]), c(f[2]) {}
     LANES_METHOD f8 at(f8 x, f8 y) const { return a * x + (b * y + c); }
-    // The most and the least that it is at the samples of tiles, as these compute it.
-    LANES_METHOD f8 most_within(const LensTiles& tiles) const {
-        return a * load(a > 0.0f ? tiles.high_x : tiles.low_x) +
-               (b * load(b > 0.0f ? tiles.high_y : tiles.low_y) + c);
+};
+
+// A function of an edge. Which bounds of tiles it is the most at is known once for all of them.
+struct EdgeFunction : PlaceFunction {
+    const float least;  // of samples inside
+    const ptrdiff_t most_x, most_y, least_x, least_y;  // bounds, from the first one
+
+    explicit EdgeFunction(const float* edge)
+        : PlaceFunction(edge),
+          least(least_inside(edge)),
+          most_x(a > 0.0f ? HIGH_X : LOW_X),
+          most_y(b > 0.0f ? HIGH_Y : LOW_Y),
+          least_x(HIGH_X + LOW_X - most_x),
+          least_y(HIGH_Y + LOW_Y - most_y) {}
+    // Which samples lie inside; tiles of which none does, and of which all do, as these compute it.
+    LANES_METHOD i8 holds(f8 x, f8 y) const { return at(x, y) >= least; }
+    LANES_METHOD i8 misses(const float* bounds) const {
+        return a * load(bounds + most_x) + (b * load(bounds + most_y) + c) < least;
     }
-    LANES_METHOD f8 least_within(const LensTiles& tiles) const {
-        return a * load(a > 0.0f ? tiles.low_x : tiles.high_x) +
-               (b * load(b > 0.0f ? tiles.low_y : tiles.high_y) + c);
+    LANES_METHOD i8 covers(const float* bounds) const {
+        return a * load(bounds + least_x) + (b * load(bounds + least_y) + c) >= least;
     }
+
+private:
+    static constexpr ptrdiff_t LOW_X = 0, LOW_Y = LENS_GROUP_TILES, HIGH_X = 2 * LENS_GROUP_TILES,
+                               HIGH_Y = 3 * LENS_GROUP_TILES;
 };
 
 // A triangle and where it is drawn.
@@ -78,8 +95,9 @@ struct LensDrawing {
     const Triangle& t;
     const LensTable& lens;
     const Part& part;
-    const PlaceFunction edge0, edge1, edge2, nearness;
-    const float least0, least1, least2, greatest;
+    const EdgeFunction edge0, edge1, edge2;
+    const PlaceFunction nearness;
+    const float greatest;
     const int32_t face;
     const i8 tag;
     const int64_t stride;
@@ -96,9 +114,6 @@ struct LensDrawing {
           edge1(t.edge + 3),
           edge2(t.edge + 6),
           nearness(t.inverse_depth),
-          least0(least_inside(t.edge)),
-          least1(least_inside(t.edge + 3)),
-          least2(least_inside(t.edge + 6)),
           greatest(p.greatest_inverse_depth),
           face(t.face),
           tag(splat(static_cast<int32_t>(number))),
@@ -123,8 +138,7 @@ struct LensDrawing {
                 const f8 n = nearness.at(at, down);
                 i8 drawn = (n > before) & (n <= greatest);
                 if (!WITHIN) {
-                    drawn &= (edge0.at(at, down) >= least0) & (edge1.at(at, down) >= least1) &
-                             (edge2.at(at, down) >= least2);
+                    drawn &= edge0.holds(at, down) & edge1.holds(at, down) & edge2.holds(at, down);
                     if (SEVERAL) drawn &= lies_on(faces + x, face);
                 }
                 // A branch here would be foreseen too seldom to be worth it.
@@ -146,16 +160,15 @@ struct LensDrawing {
     // A bit for each tile of which samples may lie in the triangle.
     LANES_METHOD uint32_t reached(const LensTiles& tiles) const {
         const i8 here = (load(tiles.faces) & (1 << face)) != 0;
-        return lane_bits(here & ~((edge0.most_within(tiles) < least0) |
-                                  (edge1.most_within(tiles) < least1) |
-                                  (edge2.most_within(tiles) < least2)));
+        const float* bounds = tiles.low_x;
+        return lane_bits(here &
+                         ~(edge0.misses(bounds) | edge1.misses(bounds) | edge2.misses(bounds)));
     }
 
     // A bit for each tile all of whose samples do.
     LANES_METHOD uint32_t covered(const LensTiles& tiles) const {
-        return lane_bits((edge0.least_within(tiles) >= least0) &
-                         (edge1.least_within(tiles) >= least1) &
-                         (edge2.least_within(tiles) >= least2));
+        const float* bounds = tiles.low_x;
+        return lane_bits(edge0.covers(bounds) & edge1.covers(bounds) & edge2.covers(bounds));
     }
 };
 
@@ -169,10 +182,12 @@ void draw_tiles(const Triangle& t, uint32_t number, const Part& part, const Proj
     }
     const LensTable& lens = *p.table;
     const int32_t first = t.x0 / LENS_TILE_COLUMNS, last = t.x1 / LENS_TILE_COLUMNS;
-    for (int32_t row = y0 / LENS_TILE_ROWS; row <= y1 / LENS_TILE_ROWS; row++) {
+    // What reaches one row of a tile alone is drawn with the tile above.
+    const int32_t last_row = std::max(y0, y1 - 1) / LENS_TILE_ROWS;
+    for (int32_t row = y0 / LENS_TILE_ROWS; row <= last_row; row++) {
         const LensTiles* groups = lens.tiles + row * lens.tile_groups;
         const int32_t top = std::max(y0, row * LENS_TILE_ROWS),
-                      bottom = std::min(y1, (row + 1) * LENS_TILE_ROWS - 1);
+                      bottom = row == last_row ? y1 : (row + 1) * LENS_TILE_ROWS - 1;
         for (int32_t g = first / LENS_GROUP_TILES; g <= last / LENS_GROUP_TILES; g++) {
             const int32_t begin = g * LENS_GROUP_TILES;
             uint32_t tiles = drawing.reached(groups[g]);

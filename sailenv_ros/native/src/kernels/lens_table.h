@@ -44,7 +44,8 @@ struct CubeFace {
     SampleBox all;            // samples of the face; none where the face is not used
 };
 
-// A group of tiles: which faces their samples lie on, and the places' bounds if that is one.
+// A group of tiles: which faces their samples and those of the next row lie on, and the places'
+// bounds if that is one. (Bands of fine samples end with the first row of the next tile.)
 struct LensTiles {
     float low_x[LENS_GROUP_TILES], low_y[LENS_GROUP_TILES];
     float high_x[LENS_GROUP_TILES], high_y[LENS_GROUP_TILES];
