@@ -5,6 +5,8 @@ Fields that end in `_at` hold addresses of arrays. The process that fills them i
 
 from __future__ import annotations
 
+from math import prod
+
 from sailenv_ros.native.render_types import ADDRESS, structure
 
 __all__ = [
@@ -13,7 +15,7 @@ __all__ = [
     "CUBE_FACES",
     "FACE_CELLS",
     "FACE_NODE",
-    "LENS_GROUP_TILES",
+    "LENS_GROUP_SHAPE",
     "LENS_TABLE",
     "LENS_TILES",
     "LENS_TILE_SHAPE",
@@ -25,8 +27,8 @@ FACE_CELLS, BLOCK_CELLS = 128, 8
 LENS_TILE_SHAPE = 8, 8
 """Rows and columns of a tile."""
 
-LENS_GROUP_TILES = 8
-"""Tiles side by side that are looked at together."""
+LENS_GROUP_SHAPE = 4, 2
+"""Rows and columns of the tiles that are looked at together."""
 
 UNKNOWN_BEND = 1e30
 
@@ -41,7 +43,8 @@ CUBE_FACE = structure(
 )
 
 LENS_TILES = structure(
-    ("low_x low_y high_x high_y", "<f4", LENS_GROUP_TILES), ("faces", "<i4", LENS_GROUP_TILES)
+    ("low_x low_y high_x high_y", "<f4", prod(LENS_GROUP_SHAPE)),
+    ("faces", "<i4", prod(LENS_GROUP_SHAPE)),
 )
 
 LENS_TABLE = structure(

@@ -23,7 +23,7 @@ from sailenv_ros.native.lens_tables import (
     CUBE_FACES,
     FACE_CELLS,
     FACE_NODE,
-    LENS_GROUP_TILES,
+    LENS_GROUP_SHAPE,
     LENS_TABLE,
     LENS_TILE_SHAPE,
     LENS_TILES,
@@ -226,27 +226,29 @@ def _mean_steps(places: Doubles, axis: int) -> Doubles:
 def _tiles(
     x: NDArray[np.float32], y: NDArray[np.float32], face: NDArray[np.uint8]
 ) -> NDArray[np.void]:
-    """Return (tile rows, tile groups) LENS_TILES, of their rows and the next one.
+    """Return (rows, columns) of groups as LENS_TILES: of the tiles' rows and the next one.
 
     Bands of fine samples end with the first row of the next tile.
     """
     high, wide = LENS_TILE_SHAPE
-    group = LENS_GROUP_TILES * wide
-    rows, groups = -(-x.shape[0] // high), -(-x.shape[1] // group)
-    widths = (0, rows * high - x.shape[0]), (0, groups * group - x.shape[1])
+    down, across = (-(-count // size) for count, size in zip(x.shape, LENS_TILE_SHAPE, strict=True))
+    group_rows, group_columns = LENS_GROUP_SHAPE
+    rows, columns = -(-down // group_rows), -(-across // group_columns)
+    down, across = rows * group_rows, columns * group_columns
+    widths = (0, down * high - x.shape[0]), (0, across * wide - x.shape[1])
 
     def split(values: NDArray[Any], filling: float) -> NDArray[Any]:
-        padded = np.pad(values, widths, constant_values=filling)
-        grouped = padded.reshape(rows, high, groups, LENS_GROUP_TILES, wide)
-        own = grouped.transpose(1, 4, 0, 2, 3)
+        padded = np.pad(values, widths, constant_values=filling).reshape(down, high, across, wide)
+        own = padded.transpose(1, 3, 0, 2)
         below = np.full_like(own[:1], filling)
         below[:, :, :-1] = own[:1, :, 1:]
-        return np.concatenate([own, below]).reshape(-1, rows, groups, LENS_GROUP_TILES)
+        samples = np.concatenate([own, below]).reshape(-1, rows, group_rows, columns, group_columns)
+        return samples.transpose(0, 1, 3, 2, 4).reshape(-1, rows, columns, group_rows * group_columns)
 
     places = [split(values, np.nan) for values in (x, y)]
     bits = np.left_shift(1, split(face, 0), dtype=np.int32)
     bits[np.isnan(places[0])] = 0
-    tiles = np.zeros((rows, groups), LENS_TILES)
+    tiles = np.zeros((rows, columns), LENS_TILES)
     tiles["faces"] = np.bitwise_or.reduce(bits, axis=0)
     alone = (tiles["faces"] & (tiles["faces"] - 1)) == 0
     for name, own in zip("xy", places, strict=True):

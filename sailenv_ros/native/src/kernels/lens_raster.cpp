@@ -9,9 +9,20 @@ namespace sailenv {
 namespace {
 
 constexpr float LEAST_DEPTH_M = 1e-3f;  // corners nearer than that have no place on a face
+constexpr float PLACE_MARGIN = 1e-5f;   // around the corners' places
+constexpr double CLIP_MARGIN = 1e-4;    // the same, of triangles that come near the eye's plane
 constexpr float NEAR_CELLS = 1.0f, WIDE_CELLS = 4.0f;  // as far as `bend` and `wide_bend` are known
 // Triangles whose bounds are wider or higher than that are drawn tile by tile.
+// Of tiles of a group, those of the first column.
+constexpr uint32_t FIRST_COLUMN =
+    ((1u << LENS_GROUP_TILES) - 1) / ((1u << LENS_GROUP_COLUMNS) - 1);
 constexpr int32_t WIDE_SAMPLES = 16, HIGH_SAMPLES = 8;
+
+// Bits `first` to `last` of so many; beyond both ends there are none.
+uint32_t bits_between(int32_t first, int32_t last, int32_t count) {
+    const uint32_t all = (1u << count) - 1;
+    return (first > 0 ? all << first : all) & (last + 1 < count ? (1u << (last + 1)) - 1 : all);
+}
 
 void include(SampleBox& box, const SampleBox& other) {
     box.x0 = std::min(box.x0, other.x0);
@@ -40,20 +51,97 @@ SampleBox samples_within(const CubeFace& face, const float* low, const float* hi
     return box;
 }
 
-// Whether all corners lie beyond one side of the face's samples, before or behind the eye.
-bool is_beyond_a_side(const CubeFace& face, const float (&corners)[3][3]) {
-    for (int axis = 0; axis < 2; axis++) {
-        bool low = true, high = true;
-        for (const auto& corner : corners) {
-            const double at = corner[axis], z = corner[2];
-            const double margin = 1e-5 * (std::fabs(at) + std::fabs(z));
-            low = low && at < face.low[axis] * z - margin;
-            high = high && at > face.high[axis] * z + margin;
+// Of a face's samples a rectangle that a triangle which comes near the eye's plane reaches; false
+// if it reaches none.
+bool clip_to_face(const CubeFace& face, const ClusterRows& r, int32_t k, float* low, float* high) {
+    struct Corner {
+        double at[3];
+    };
+    Corner polygon[8], clipped[8];
+    int32_t count = 3;
+    for (int32_t j = 0; j < 9; j++) polygon[j / 3].at[j % 3] = r.corner[j][k];
+    for (int32_t side = 0; side < 4; side++) {
+        const int32_t axis = side / 2;
+        const double sign = side % 2 ? -1.0 : 1.0;
+        const double limit = side % 2 ? face.high[axis] + CLIP_MARGIN : face.low[axis] - CLIP_MARGIN;
+        const auto inside = [&](const Corner& c) { return sign * (c.at[axis] - limit * c.at[2]); };
+        int32_t kept = 0;
+        for (int32_t j = 0; j < count; j++) {
+            const Corner &from = polygon[j], &to = polygon[(j + 1) % count];
+            const double here = inside(from), there = inside(to);
+            if (here >= 0.0) clipped[kept++] = from;
+            if ((here >= 0.0) == (there >= 0.0)) continue;
+            Corner& border = clipped[kept++];
+            for (int i = 0; i < 3; i++) {
+                border.at[i] = from.at[i] + (to.at[i] - from.at[i]) * (here / (here - there));
+            }
         }
-        if (low || high) return true;
+        count = kept;
+        std::copy(clipped, clipped + count, polygon);
     }
-    return false;
+    for (int32_t axis = 0; axis < 2; axis++) {
+        double least = face.high[axis], most = face.low[axis];
+        for (int32_t j = 0; j < count; j++) {
+            const double z = polygon[j].at[2];
+            // A triangle through the eye itself.
+            const bool known = z > 1e-9;
+            least = known ? std::min(least, polygon[j].at[axis] / z) : face.low[axis];
+            most = known ? std::max(most, polygon[j].at[axis] / z) : face.high[axis];
+            if (!known) break;
+        }
+        low[axis] = static_cast<float>(std::max(least - CLIP_MARGIN, face.low[axis]));
+        high[axis] = static_cast<float>(std::min(most + CLIP_MARGIN, face.high[axis]));
+    }
+    return count > 0;
 }
+
+// The samples that one triangle can reach, by cells of its face.
+SampleBox samples_of(const ClusterRows& r, int32_t k, const CubeFace& face) {
+    const CornerPlace &a = *r.place[0][k], &b = *r.place[1][k], &c = *r.place[2][k];
+    float low[2] = {std::min(a.x, std::min(b.x, c.x)) - PLACE_MARGIN,
+                    std::min(a.y, std::min(b.y, c.y)) - PLACE_MARGIN};
+    float high[2] = {std::max(a.x, std::max(b.x, c.x)) + PLACE_MARGIN,
+                     std::max(a.y, std::max(b.y, c.y)) + PLACE_MARGIN};
+    const bool crosses = !(a.x == a.x && b.x == b.x && c.x == c.x);
+    if (crosses && !clip_to_face(face, r, k, low, high)) return {1, 1, 0, 0};
+    return samples_within(face, low, high);
+}
+
+// Which of eight triangles show their fronts, by the determinant of `set_edges_up` to the bit.
+LANES_INLINE i8 shows_front(const ClusterRows& r, int32_t k) {
+    i8 found;
+    for (int32_t half = 0; half < 8; half += 4) {
+        d4 at[9];
+        for (int j = 0; j < 9; j++) at[j] = load_double(r.corner[j] + k + half);
+        const d4 det = at[0] * (at[4] * at[8] - at[5] * at[7]) +
+                       at[1] * (at[5] * at[6] - at[3] * at[8]) +
+                       at[2] * (at[3] * at[7] - at[4] * at[6]);
+        const l4 front = det < 0.0;
+        for (int j = 0; j < 4; j++) found[half + j] = static_cast<int32_t>(front[j]);
+    }
+    return found;
+}
+
+// Of eight corners.
+struct EightPlaces {
+    f8 x, y, u, v, bend, wide_bend;
+
+    LANES_METHOD explicit EightPlaces(const CornerPlace* const* places) {
+        f8 rows[8];
+        for (int j = 0; j < 8; j++) rows[j] = load(&places[j]->x);
+        transpose(rows);
+        x = rows[0];
+        y = rows[1];
+        u = rows[2];
+        v = rows[3];
+        bend = rows[4];
+        wide_bend = rows[5];
+    }
+};
+
+// Not greater, and not less, as a float.
+float down(double x) { return std::nextafter(static_cast<float>(x), -1e30f); }
+float up(double x) { return std::nextafter(static_cast<float>(x), 1e30f); }
 
 // A function a x + b y + c of a place. A copy: stores must not make it be loaded again.
 struct PlaceFunction {
@@ -181,22 +269,29 @@ void draw_tiles(const Triangle& t, uint32_t number, const Part& part, const Proj
         return;
     }
     const LensTable& lens = *p.table;
-    const int32_t first = t.x0 / LENS_TILE_COLUMNS, last = t.x1 / LENS_TILE_COLUMNS;
     // What reaches one row of a tile alone is drawn with the tile above.
-    const int32_t last_row = std::max(y0, y1 - 1) / LENS_TILE_ROWS;
-    for (int32_t row = y0 / LENS_TILE_ROWS; row <= last_row; row++) {
-        const LensTiles* groups = lens.tiles + row * lens.tile_groups;
-        const int32_t top = std::max(y0, row * LENS_TILE_ROWS),
-                      bottom = row == last_row ? y1 : (row + 1) * LENS_TILE_ROWS - 1;
-        for (int32_t g = first / LENS_GROUP_TILES; g <= last / LENS_GROUP_TILES; g++) {
-            const int32_t begin = g * LENS_GROUP_TILES;
-            uint32_t tiles = drawing.reached(groups[g]);
-            if (begin < first) tiles &= ~0u << (first - begin);
-            if (begin + LENS_GROUP_TILES > last) tiles &= (2u << (last - begin)) - 1;
+    const int32_t first_row = y0 / LENS_TILE_ROWS, last_row = std::max(y0, y1 - 1) / LENS_TILE_ROWS;
+    const int32_t first = t.x0 / LENS_TILE_COLUMNS, last = t.x1 / LENS_TILE_COLUMNS;
+    for (int32_t down = first_row / LENS_GROUP_ROWS; down <= last_row / LENS_GROUP_ROWS; down++) {
+        const LensTiles* groups = lens.tiles + down * lens.tile_groups;
+        const int32_t tile_row = down * LENS_GROUP_ROWS;
+        const uint32_t rows = bits_between((first_row - tile_row) * LENS_GROUP_COLUMNS,
+                                           (last_row + 1 - tile_row) * LENS_GROUP_COLUMNS - 1,
+                                           LENS_GROUP_TILES);
+        for (int32_t across = first / LENS_GROUP_COLUMNS; across <= last / LENS_GROUP_COLUMNS;
+             across++) {
+            uint32_t tiles = drawing.reached(groups[across]);
             if (tiles == 0) continue;
-            const uint32_t covered = drawing.covered(groups[g]);
+            const int32_t column = across * LENS_GROUP_COLUMNS;
+            tiles &= rows &
+                     bits_between(first - column, last - column, LENS_GROUP_COLUMNS) *
+                         FIRST_COLUMN;
+            const uint32_t covered = drawing.covered(groups[across]);
             for (; tiles != 0; tiles &= tiles - 1) {
-                const int32_t k = __builtin_ctz(tiles), left = (begin + k) * LENS_TILE_COLUMNS;
+                const int32_t k = __builtin_ctz(tiles), row = tile_row + k / LENS_GROUP_COLUMNS,
+                              left = (column + k % LENS_GROUP_COLUMNS) * LENS_TILE_COLUMNS,
+                              top = std::max(y0, row * LENS_TILE_ROWS),
+                              bottom = row == last_row ? y1 : (row + 1) * LENS_TILE_ROWS - 1;
                 if (covered >> k & 1) {
                     drawing.template draw<true>(top, bottom, left, left);
                 } else {
@@ -213,7 +308,7 @@ void place_corners(const CubeFace& face, const float* x, const float* y, const f
                    int32_t count, CornerPlace* out) {
     for (int32_t k = 0; k < count; k++) {
         CornerPlace& place = out[k];
-        place = {__builtin_nanf(""), 0.0f, 0.0f, 0.0f, UNKNOWN_BEND, UNKNOWN_BEND};
+        place = {__builtin_nanf(""), 0.0f, 0.0f, 0.0f, UNKNOWN_BEND, UNKNOWN_BEND, {}};
         if (!(z[k] >= LEAST_DEPTH_M)) continue;
         const float per = 1.0f / z[k];
         place.x = x[k] * per;
@@ -238,56 +333,51 @@ void place_corners(const CubeFace& face, const float* x, const float* y, const f
     }
 }
 
-bool reach_through_lens(const CubeFace& face, const CornerPlace* const* places,
-                        const float (&corners)[3][3], SampleBox& reach) {
-    const CornerPlace &a = *places[0], &b = *places[1], &c = *places[2];
-    const bool crosses = !(a.x == a.x && b.x == b.x && c.x == c.x);
-    if (crosses) {
-        if (is_beyond_a_side(face, corners)) return false;
-        if (corners[0][2] <= LEAST_DEPTH_M && corners[1][2] <= LEAST_DEPTH_M &&
-            corners[2][2] <= LEAST_DEPTH_M) {
-            return false;
+void set_lens_bounds(ClusterRows& r, int32_t count, const Projection& p, const CubeFace& face,
+                     bool front, bool back) {
+    for (int32_t k = 0; k < count; k += 8) {
+        const EightPlaces a(r.place[0] + k), b(r.place[1] + k), c(r.place[2] + k);
+        i8 drawn = splat(front ? -1 : 0);
+        if (front != back) drawn = front ? shows_front(r, k) : ~shows_front(r, k);
+        const f8 low_x = min8(a.x, min8(b.x, c.x)) - PLACE_MARGIN,
+                 low_y = min8(a.y, min8(b.y, c.y)) - PLACE_MARGIN,
+                 high_x = max8(a.x, max8(b.x, c.x)) + PLACE_MARGIN,
+                 high_y = max8(a.y, max8(b.y, c.y)) + PLACE_MARGIN;
+        const i8 crosses = ~((a.x == a.x) & (b.x == b.x) & (c.x == c.x));
+        const i8 beyond = (high_x < down(face.low[0])) | (high_y < down(face.low[1])) |
+                          (low_x > up(face.high[0])) | (low_y > up(face.high[1]));
+        drawn &= crosses | ~beyond;
+        const f8 cells = max8((high_x - low_x) * face.per[0], (high_y - low_y) * face.per[1]);
+        const f8 near_bend = max8(a.bend, max8(b.bend, c.bend)),
+                 wide_bend = max8(a.wide_bend, max8(b.wide_bend, c.wide_bend));
+        const f8 bend = cells <= NEAR_CELLS   ? near_bend
+                        : cells <= WIDE_CELLS ? wide_bend
+                                              : splat(UNKNOWN_BEND);
+        // A place lies off the plane through the corners' places by at most a third of the square
+        // of the longest side, and these by an eighth.
+        const f8 off = bend * (0.4f * cells * cells + 0.15f) + 0.01f;
+        const f8 left = min8(a.u, min8(b.u, c.u)) - off, right = max8(a.u, max8(b.u, c.u)) + off,
+                 top = min8(a.v, min8(b.v, c.v)) - off, bottom = max8(a.v, max8(b.v, c.v)) + off;
+        const auto within = [](int32_t first, int32_t other) {
+            return static_cast<float>(std::max(first, other));
+        };
+        const float x0 = within(face.all.x0, p.x0), y0 = within(face.all.y0, p.y0),
+                    x1 = -within(-face.all.x1, -p.x1), y1 = -within(-face.all.y1, -p.y1);
+        // Rounded inwards to samples: upwards is the negative floor of the negative.
+        store(r.x0 + k, drawn ? -floor8(-clamp8(left, x0, 1e5f)) : splat(1.0f));
+        store(r.x1 + k, drawn ? floor8(clamp8(right, -1.0f, x1)) : splat(0.0f));
+        store(r.y0 + k, -floor8(-clamp8(top, y0, 1e5f)));
+        store(r.y1 + k, floor8(clamp8(bottom, -1.0f, y1)));
+        const i8 unknown = crosses | ~(bend < UNKNOWN_BEND);
+        for (uint32_t rest = lane_bits(drawn & unknown); rest != 0; rest &= rest - 1) {
+            const int32_t lane = k + __builtin_ctz(rest);
+            const SampleBox box = samples_of(r, lane, face);
+            r.x0[lane] = within(box.x0, p.x0);
+            r.y0[lane] = within(box.y0, p.y0);
+            r.x1[lane] = -within(-box.x1, -p.x1);
+            r.y1[lane] = -within(-box.y1, -p.y1);
         }
-        reach = face.all;
-        return true;
     }
-    const float margin = 1e-5f;
-    const float low[2] = {std::min(a.x, std::min(b.x, c.x)) - margin,
-                          std::min(a.y, std::min(b.y, c.y)) - margin};
-    const float high[2] = {std::max(a.x, std::max(b.x, c.x)) + margin,
-                           std::max(a.y, std::max(b.y, c.y)) + margin};
-    for (int axis = 0; axis < 2; axis++) {
-        if (high[axis] < face.low[axis] || low[axis] > face.high[axis]) return false;
-    }
-    const float cells =
-        std::max((high[0] - low[0]) * face.per[0], (high[1] - low[1]) * face.per[1]);
-    float bend = UNKNOWN_BEND;
-    if (cells <= NEAR_CELLS) {
-        bend = std::max(a.bend, std::max(b.bend, c.bend));
-    } else if (cells <= WIDE_CELLS) {
-        bend = std::max(a.wide_bend, std::max(b.wide_bend, c.wide_bend));
-    }
-    if (!(bend < UNKNOWN_BEND)) {
-        reach = samples_within(face, low, high);
-        return reach.x0 <= reach.x1;
-    }
-    // A place lies off the plane through the corners' places by at most a third of the square of
-    // the longest side, and these by an eighth.
-    const float off = bend * (0.4f * cells * cells + 0.15f) + 0.01f;
-    const auto first = [&](float p, float q, float r, int16_t least) {
-        const float at = std::ceil(std::min(p, std::min(q, r)) - off);
-        return at > least ? static_cast<int16_t>(std::min(at, 32000.0f)) : least;
-    };
-    const auto last = [&](float p, float q, float r, int16_t most) {
-        const float at = std::floor(std::max(p, std::max(q, r)) + off);
-        return at < most ? static_cast<int16_t>(std::max(at, -1.0f)) : most;
-    };
-    reach.x0 = first(a.u, b.u, c.u, face.all.x0);
-    reach.x1 = last(a.u, b.u, c.u, face.all.x1);
-    if (reach.x0 > reach.x1) return false;
-    reach.y0 = first(a.v, b.v, c.v, face.all.y0);
-    reach.y1 = last(a.v, b.v, c.v, face.all.y1);
-    return reach.y0 <= reach.y1;
 }
 
 void draw_through_lens(const Triangle& t, uint32_t number, const Part& part, const Projection& p,

@@ -2,6 +2,7 @@
 // reach, and which of them see it.
 #pragma once
 
+#include "cluster_rows.h"
 #include "lens_table.h"
 #include "raster.h"
 
@@ -11,10 +12,10 @@ namespace sailenv {
 void place_corners(const CubeFace& face, const float* x, const float* y, const float* z,
                    int32_t count, CornerPlace* out);
 
-// The samples that a triangle can reach, of a face's; false if there are none. `corners` are the
-// three, as the eye has them: x, y, z.
-bool reach_through_lens(const CubeFace& face, const CornerPlace* const* places,
-                        const float (&corners)[3][3], SampleBox& reach);
+// Which samples triangles can reach: their bounds; x0 > x1 if there are none, as of those whose
+// side that is seen is not drawn. `count` is a multiple of eight.
+void set_lens_bounds(ClusterRows& r, int32_t count, const Projection& p, const CubeFace& face,
+                     bool front, bool back);
 
 // Draws the samples of some rows; see `draw_triangle`.
 void draw_through_lens(const Triangle& t, uint32_t number, const Part& part, const Projection& p,

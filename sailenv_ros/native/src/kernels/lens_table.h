@@ -18,7 +18,8 @@ constexpr int32_t CUBE_FACES = 6;
 constexpr int32_t FACE_CELLS = 128;                           // of a face, along each side
 constexpr int32_t BLOCK_CELLS = 8;                            // of a block of them, along each side
 constexpr int32_t LENS_TILE_COLUMNS = 8, LENS_TILE_ROWS = 8;  // of samples
-constexpr int32_t LENS_GROUP_TILES = 8;                       // of a group, side by side
+constexpr int32_t LENS_GROUP_COLUMNS = 2, LENS_GROUP_ROWS = 4;  // of a group of tiles
+constexpr int32_t LENS_GROUP_TILES = LENS_GROUP_COLUMNS * LENS_GROUP_ROWS;
 constexpr int32_t NO_FACE = -1;                               // where the lens sees nothing
 constexpr float UNKNOWN_BEND = 1e30f;
 
@@ -56,7 +57,7 @@ struct LensTable {
     const float *x, *y;      // (rows, stride): NaN where the lens sees nothing, and beyond the row
     const uint8_t* face;     // (rows, stride)
     const float* steps;      // (4, H, step_stride), from pixel to pixel; see LensSteps
-    const LensTiles* tiles;  // (tile rows, tile_groups)
+    const LensTiles* tiles;  // (rows of groups, tile_groups)
     const CubeFace* faces;   // (CUBE_FACES,)
     int64_t stride, tile_groups;
     int64_t rows, columns;  // samples

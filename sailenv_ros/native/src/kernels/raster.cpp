@@ -7,6 +7,7 @@
 
 #include "../threads.h"
 #include "cluster_culling.h"
+#include "cluster_rows.h"
 #include "lens_raster.h"
 #include "mask_test.h"
 
@@ -71,8 +72,9 @@ FaceBounds bounds_within(const Projection& p, int32_t number) {
     bool all = false, none = true;
     for (int32_t y = p.y0 / LENS_TILE_ROWS; y <= p.y1 / LENS_TILE_ROWS; y++) {
         for (int32_t x = p.x0 / LENS_TILE_COLUMNS; x <= p.x1 / LENS_TILE_COLUMNS; x++) {
-            const LensTiles& group = lens.tiles[y * lens.tile_groups + x / LENS_GROUP_TILES];
-            const int32_t k = x % LENS_GROUP_TILES;
+            const LensTiles& group =
+                lens.tiles[y / LENS_GROUP_ROWS * lens.tile_groups + x / LENS_GROUP_COLUMNS];
+            const int32_t k = y % LENS_GROUP_ROWS * LENS_GROUP_COLUMNS + x % LENS_GROUP_COLUMNS;
             if (!(group.faces[k] >> number & 1)) continue;
             none = false;
             // Of several faces a tile has no bounds.
@@ -141,27 +143,6 @@ void set_eye(InstanceFrame& frame, const Projection& p) {
     frame.eye[1] = (f * g - d * i) * x + (a * i - c * g) * y + (c * d - a * f) * z;
     frame.eye[2] = (d * h - e * g) * x + (b * g - a * h) * y + (a * e - b * d) * z;
 }
-
-LANES_INLINE d4 load_double(const float* p) {
-    const f4 r = *reinterpret_cast<const f4_any*>(p);
-    return __builtin_convertvector(r, d4);
-}
-LANES_INLINE void store_double(float* p, d4 x) {
-    *reinterpret_cast<f4_any*>(p) = __builtin_convertvector(x, f4);
-}
-
-// The numbers of a cluster's triangles, each in a row of its own.
-struct ClusterRows {
-    alignas(32) float corner[9][CLUSTER_TRIANGLES];  // x, y, z of three corners
-    alignas(32) float edge[9][CLUSTER_TRIANGLES];
-    alignas(32) float inverse_depth[3][CLUSTER_TRIANGLES];
-    alignas(32) float inverse_det[CLUSTER_TRIANGLES];
-    alignas(32) float x0[CLUSTER_TRIANGLES], x1[CLUSTER_TRIANGLES];
-    alignas(32) float y0[CLUSTER_TRIANGLES], y1[CLUSTER_TRIANGLES];
-    const CornerPlace* place[3][CLUSTER_TRIANGLES];  // where the lens has a table
-    int32_t back[CLUSTER_TRIANGLES];
-    int32_t vertex[3][CLUSTER_TRIANGLES];
-};
 
 // Edge functions and planes, in double precision. Two triangles that share an edge get the same
 // numbers for it with opposite signs, so no pixel between them is lost or drawn twice. Nothing is
@@ -275,31 +256,6 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
     }
 }
 
-// Whether a triangle shows its front, by the determinant of `set_edges_up` to the bit.
-bool shows_front(const float (&corners)[3][3]) {
-    const double ax = corners[0][0], ay = corners[0][1], az = corners[0][2];
-    const double bx = corners[1][0], by = corners[1][1], bz = corners[1][2];
-    const double cx = corners[2][0], cy = corners[2][1], cz = corners[2][2];
-    return ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx) < 0.0;
-}
-
-// The same through a lens that bends lines, of triangles of which a side that is drawn is seen.
-void set_lens_bounds(ClusterRows& r, int32_t count, const Projection& p, const CubeFace& face,
-                     bool front, bool back) {
-    for (int32_t k = 0; k < count; k++) {
-        const CornerPlace* const places[3] = {r.place[0][k], r.place[1][k], r.place[2][k]};
-        float corners[3][3];
-        for (int j = 0; j < 9; j++) corners[j / 3][j % 3] = r.corner[j][k];
-        SampleBox reach = {1, 1, 0, 0};
-        const bool drawn = front == back ? front : shows_front(corners) == front;
-        if (!drawn || !reach_through_lens(face, places, corners, reach)) reach = {1, 1, 0, 0};
-        r.x0[k] = static_cast<float>(std::max<int32_t>(reach.x0, p.x0));
-        r.x1[k] = static_cast<float>(std::min<int32_t>(reach.x1, p.x1));
-        r.y0[k] = static_cast<float>(std::max<int32_t>(reach.y0, p.y0));
-        r.y1[k] = static_cast<float>(std::min<int32_t>(reach.y1, p.y1));
-    }
-}
-
 // Fills up to the next multiple of eight with triangles that are nowhere.
 void pad(ClusterRows& r, int32_t count) {
     for (int32_t k = count; k < ((count + 7) & ~7); k++) {
@@ -346,13 +302,17 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
     const bool two_sided = DRAWN == Drawn::SHADOW || (part.flags & PART_DOUBLE_SIDED);
     const bool front = seen.facing != FACING_BACK;
     const bool back = seen.facing == FACING_BACK || (seen.facing == FACING_BOTH && two_sided);
+    const int32_t padded = (count + 7) & ~7;
+    pad(r, count);
     if (p.table != nullptr) {
         const CornerPlace* places = set.places.data() + corners_at;
         for (int32_t k = 0; k < 3 * count; k++) r.place[k % 3][k / 3] = places + corners[k];
-        set_lens_bounds(r, count, p, p.table->faces[seen.face], front, back);
+        for (int32_t k = count; k < padded; k++) {
+            for (int j = 0; j < 3; j++) r.place[j][k] = places;
+        }
+        set_lens_bounds(r, padded, p, p.table->faces[seen.face], front, back);
     } else {
-        pad(r, count);
-        set_bounds<DRAWN>(r, (count + 7) & ~7, p);
+        set_bounds<DRAWN>(r, padded, p);
     }
     const int32_t reaching = keep_reaching(r, count);
     pad(r, reaching);
@@ -721,12 +681,12 @@ void clear_band(const Projection& projection, int32_t band, int32_t band_rows, i
     if (visible != nullptr) memset(visible, 0xff, static_cast<size_t>(count) * 4);
 }
 
-// Asks for where the samples of some rows look.
-void prefetch_places(const LensTable& lens, const RowRange& rows) {
+// Brings where the samples of some rows look into the cache. Reading is quicker than prefetching.
+void read_places(const LensTable& lens, const RowRange& rows) {
     constexpr int64_t LINE = 16;  // numbers of a line of the cache
-    for (const float* places : {lens.x, lens.y}) {
+    for (const volatile float* places : {lens.x, lens.y}) {
         for (int64_t k = rows.first * lens.stride; k < (rows.last + 1) * lens.stride; k += LINE) {
-            __builtin_prefetch(places + k, 0, 2);
+            static_cast<void>(places[k]);
         }
     }
 }
@@ -738,7 +698,7 @@ void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& 
     const int64_t before = rows.first * stride;
     uint32_t* seen = visible == nullptr ? nullptr : visible - before;
     const bool bends = projection.table != nullptr;
-    if (bends) prefetch_places(*projection.table, rows);
+    if (bends) read_places(*projection.table, rows);
     const auto plain = bends             ? draw_through_lens
                        : projection.fine ? draw_triangle<false, true>
                                          : draw_triangle<false, false>;

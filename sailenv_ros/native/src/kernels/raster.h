@@ -80,7 +80,7 @@ struct SeenCluster {
 
 // Where a corner lies on a face and in the picture; see lens_raster.h.
 struct CornerPlace {
-    float x, y, u, v, bend, wide_bend;
+    float x, y, u, v, bend, wide_bend, unused[2];  // eight numbers, to be loaded at once
 };
 
 // Some of the triangles, in their order, and which of them reach into which band.
