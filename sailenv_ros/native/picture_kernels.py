@@ -94,7 +94,7 @@ def find_ambient_visibility(
     settings : AmbientSettings
     pattern : (16, 2, 12) float32
         For each place in a block, points in the unit disc.
-    rays : (h, w, 3) float32 or None
+    rays : (3, h, w) float32 or None
         Rays of the pixels of even row and column, of any length, along which the surface tells
         distances; None where it tells depths.
     parallel : bool
@@ -122,7 +122,7 @@ def find_ambient_visibility(
     checked("pattern", pattern, np.float32, (16, 2, 12))
     shape = (height + 1) // 2, (width + 1) // 2
     if rays is not None:
-        checked("rays", rays, np.float32, (*shape, 3))
+        checked("rays", rays, np.float32, (3, *shape))
     inverse, visibility = np.empty(shape, np.float32), np.empty(shape, np.uint8)
     _AMBIENT(
         threads,

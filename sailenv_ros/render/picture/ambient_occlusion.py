@@ -118,7 +118,7 @@ def _halved_rays(intrinsics: CameraIntrinsics) -> NDArray[np.float32]:
     # Of depth 1 where they all lead forwards, as a pin-hole's, else of length 1.
     if np.nanmin(rays[..., 2], initial=1.0) > LEAST_FORWARD:
         rays = rays / rays[..., 2:]
-    return np.ascontiguousarray(rays, np.float32)
+    return np.ascontiguousarray(np.moveaxis(rays, -1, 0), np.float32)
 
 
 def kernel_settings(

@@ -13,7 +13,7 @@
     FIELD(const uint8_t*, known) /* (65536,): KnownLight of each instance */             \
     FIELD(const float*, pattern) /* (16, 2, TAPS) */                                     \
     FIELD(const sailenv::Lens*, lens)                                                    \
-    FIELD(const float*, rays) /* (h, w, 3): rays of any length, and the surface holds */ \
+    FIELD(const float*, rays) /* (3, h, w): rays of any length, and the surface holds */ \
                               /* distances along them; else null, and it holds depths */ \
     FIELD(int64_t, parallel)  /* 1: rays are; see `Sight` of lens.h */                   \
     FIELD(double, radius_m)                                                              \
@@ -58,14 +58,16 @@ struct Samples {
     float* depth;          // (rows, columns): see told_depth
     const uint8_t* tiles;  // (tile rows, tile columns): 1 where something may be darkened
     int64_t tile_columns;
-    const float* rays;  // (rows, columns, 3), or null
+    const float* rays;  // (3, rows, columns), or null
+    float* points;      // (rows, columns, 4), or null without rays: places [m], told_depth
 };
 
 // The length of a sample's ray, over which the surface's distance is; 1 through a pin-hole.
 LANES_INLINE float ray_length(const Samples& s, int64_t place) {
     if (s.rays == nullptr) return 1.0f;
-    const float* ray = s.rays + 3 * place;
-    return __builtin_sqrtf(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
+    const int64_t plane = s.rows * s.columns;
+    const float *x = s.rays + place, *y = x + plane, *z = y + plane;
+    return __builtin_sqrtf(*x * *x + *y * *y + *z * *z);
 }
 
 // A depth that is negative where it darkens nothing that was baked, and odd where that does not
@@ -76,6 +78,14 @@ float told_depth(float depth, bool shadow_is_baked) {
     bits = shadow_is_baked ? bits | 0x80000001U : bits & 0xfffffffeU;
     memcpy(&depth, &bits, sizeof bits);
     return depth;
+}
+
+void set_point(const Samples& s, int64_t place, float told) {
+    float* point = s.points + 4 * place;
+    for (int axis = 0; axis < 3; axis++) {
+        point[axis] = s.rays[axis * s.rows * s.columns + place] * __builtin_fabsf(told);
+    }
+    point[3] = told;
 }
 
 void halve_rows(const float* surface, int64_t width, const uint8_t* known, const Samples& s,
@@ -90,7 +100,9 @@ void halve_rows(const float* surface, int64_t width, const uint8_t* known, const
             if (has_id) light = known[static_cast<int32_t>(id)];
             const float inverse = !hit ? -1.0f / FAR_M : (light == LIGHT_BAKED ? -1.0f : 1.0f) / z;
             s.inverse[v * s.columns + u] = inverse;
-            s.depth[v * s.columns + u] = told_depth(1.0f / inverse, light == SHADOW_BAKED);
+            const float told = told_depth(1.0f / inverse, light == SHADOW_BAKED);
+            s.depth[v * s.columns + u] = told;
+            if (s.points != nullptr) set_point(s, v * s.columns + u, told);
             if (inverse > 0.0f) own_tiles[u / TILE] = 1;
         }
     }
@@ -128,30 +140,49 @@ LANES_INLINE f8 slope(f8 before, f8 after, i8 no_before, i8 no_after) {
     return select8(takes_after, after, before);
 }
 
-// Rays of eight samples.
-LANES_INLINE sailenv::Vec3x8 rays_at(const Samples& s, i8 places) {
-    sailenv::Vec3x8 found;
-    for (int k = 0; k < 8; k++) {
-        const float* ray = s.rays + 3 * static_cast<int64_t>(places[k]);
-        found.x[k] = ray[0];
-        found.y[k] = ray[1];
-        found.z[k] = ray[2];
+// Rays of eight samples of a row from a column on; those beyond a last one are as it.
+LANES_INLINE sailenv::Vec3x8 rays_at(const Samples& s, int64_t row, int64_t column, int64_t last) {
+    const int64_t plane = s.rows * s.columns;
+    const float* own = s.rays + row * s.columns;
+    if (column + 7 <= last) {
+        own += column;
+        return {load(own), load(own + plane), load(own + 2 * plane)};
     }
-    return found;
+    alignas(32) float found[3][8];
+    for (int k = 0; k < 8; k++) {
+        const float* ray = own + (column + k < last ? column + k : last);
+        for (int axis = 0; axis < 3; axis++) found[axis][k] = ray[axis * plane];
+    }
+    return {load(found[0]), load(found[1]), load(found[2])};
 }
 
 // How rays change from each sample of a row to the next one, the last one's from the one before.
 struct RayChanges {
     sailenv::Vec3x8 ray, right, down;
 };
-LANES_INLINE RayChanges ray_changes(const Samples& s, int64_t v, i8 columns) {
-    const int32_t row = static_cast<int32_t>(v * s.columns), wide = static_cast<int32_t>(s.columns);
-    const i8 last = splat(wide - 1), own = columns < last ? columns : last;
-    const i8 after = own < last ? own + 1 : own, before = own < last ? own : own - 1;
-    const int32_t below = v + 1 < s.rows ? row + wide : row;
-    const int32_t above = v + 1 < s.rows ? row : row - wide;
-    return {rays_at(s, own + row), rays_at(s, after + row) - rays_at(s, before + row),
-            rays_at(s, own + below) - rays_at(s, own + above)};
+LANES_INLINE RayChanges ray_changes(const Samples& s, int64_t v, int64_t u) {
+    const int64_t last = s.columns - 1;
+    const int64_t upper = v + 1 < s.rows ? v : v - 1;
+    const sailenv::Vec3x8 own = rays_at(s, v, u, last), after = rays_at(s, v, u + 1, last);
+    sailenv::Vec3x8 right = after - own;
+    if (u + 7 >= last) {
+        const int64_t k = last - u;
+        const sailenv::Vec3x8 before = rays_at(s, v, last - 1, last);
+        right.x[k] = own.x[k] - before.x[0];
+        right.y[k] = own.y[k] - before.y[0];
+        right.z[k] = own.z[k] - before.z[0];
+    }
+    return {own, right, rays_at(s, upper + 1, u, last) - rays_at(s, upper, u, last)};
+}
+
+// Points of eight samples, and their depths as they are told.
+LANES_INLINE sailenv::Vec3x8 points_at(const Samples& s, i8 places, f8& told) {
+    const auto at = [&](int k) { return s.points + 4 * static_cast<int64_t>(places[k]); };
+    const f8 rows[4] = {two_fours(at(0), at(4)), two_fours(at(1), at(5)), two_fours(at(2), at(6)),
+                        two_fours(at(3), at(7))};
+    sailenv::Vec3x8 found;
+    transpose4(rows, found.x, found.y, found.z, told);
+    return found;
 }
 
 // How samples see: from one point, at depths; side by side, at depths; through a lens that bends
@@ -192,7 +223,7 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
         const f8 w = abs8(own);
         const f8 column = counting() + static_cast<float>(u);
         RayChanges rays;
-        if (BENDS) rays = ray_changes(s, v, truncated(column));
+        if (BENDS) rays = ray_changes(s, v, u);
         const f8 focal = BENDS ? 1.0f / sqrt8(max8(dot(rays.right, rays.right), splat(1e-20f)))
                                : splat(set.lens.fx);
         const f8 reach =
@@ -269,25 +300,26 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             const i8 tu = truncated(min8(max8(at_u, zero), right));
             const i8 tv = truncated(min8(max8(at_v, zero), bottom));
             const i8 place = tv * columns + tu;
-            f8 other;
-            for (int k = 0; k < 8; k++) other[k] = s.depth[place[k]];
-            f8 tz = abs8(other), qx, qy;
+            f8 other, qx, qy, qz;
             if (BENDS) {
-                const sailenv::Vec3x8 there = rays_at(s, place) * tz;
+                const sailenv::Vec3x8 there = points_at(s, place, other);
                 qx = there.x;
                 qy = there.y;
-                tz = there.z;
-            } else if (PARALLEL) {
+                qz = there.z;
+            } else {
+                for (int k = 0; k < 8; k++) other[k] = s.depth[place[k]];
+                qz = abs8(other);
                 qx = set.lens.ray_x(to_float(tu));
                 qy = set.lens.ray_y(to_float(tv));
-            } else {
-                qx = set.lens.ray_x(to_float(tu)) * tz;
-                qy = set.lens.ray_y(to_float(tv)) * tz;
+                if (!PARALLEL) {
+                    qx = qx * qz;
+                    qy = qy * qz;
+                }
             }
-            const f8 dx = qx - px, dy = qy - py, dz = tz - pz;
+            const f8 dx = qx - px, dy = qy - py, dz = qz - pz;
             const f8 d2 = dx * dx + dy * dy + dz * dz + self_m2;
             const f8 fall = max8(one - d2 * per_r2, zero);
-            const f8 height_m = (level - (a * qx + b * qy + c * tz)) * plane_m;
+            const f8 height_m = (level - (a * qx + b * qy + c * qz)) * plane_m;
             const f8 rise = height_m / sqrt8(d2) - set.bias;
             const i8 odd = (bits(other) & 1) != 0;
             const i8 counts = inside & ((other > zero) | (own_moves & (~own_known | odd)));
@@ -388,14 +420,15 @@ SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
     const int64_t tile_count = tile_rows * tile_columns;
     const int64_t band = 3 * (TILE + 3 * MOST_STEP) * (columns + 2 * PAD);
     const auto depth = sailenv::allocate<float>(rows * columns);
+    const auto points = sailenv::allocate<float>(in.rays != nullptr ? 4 * rows * columns : 1);
     const auto tiles = sailenv::allocate<uint8_t>(2 * tile_count);
     const auto raw = sailenv::allocate<uint8_t>(2 * rows * columns);
     const auto bands = sailenv::allocate<float>(band * threads);
-    if (!depth || !tiles || !raw || !bands) return sailenv::STATUS_OUT_OF_MEMORY;
+    if (!depth || !points || !tiles || !raw || !bands) return sailenv::STATUS_OUT_OF_MEMORY;
     uint8_t* own = tiles.get() + tile_count;
     memset(tiles.get(), 0, static_cast<size_t>(2 * tile_count));
     const Samples samples{rows,        columns,      in.inverse, depth.get(),
-                          tiles.get(), tile_columns, in.rays};
+                          tiles.get(), tile_columns, in.rays,    in.rays != nullptr ? points.get() : nullptr};
     sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t) {
         halve_rows(in.surface, width, in.known, samples, own + first / TILE * tile_columns, first,
                    last);

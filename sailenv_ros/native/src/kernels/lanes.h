@@ -173,6 +173,36 @@ LANES_INLINE void transpose(f8 r[8]) {
     r[7] = SHUFFLE(s3, s7, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
+// Four numbers from each of two places.
+LANES_INLINE f8 two_fours(const float* a, const float* b) {
+    const f4 low = *reinterpret_cast<const f4_any*>(a), high = *reinterpret_cast<const f4_any*>(b);
+#if defined(__AVX__)
+    return (f8)_mm256_insertf128_ps(_mm256_castps128_ps256((__m128)low), (__m128)high, 1);
+#else
+    f8 r;
+    memcpy(&r, &low, sizeof low);
+    memcpy(reinterpret_cast<char*>(&r) + sizeof low, &high, sizeof high);
+    return r;
+#endif
+}
+// Eight rows of four numbers, the k-th and the one four later in `r[k]`, to four vectors.
+LANES_INLINE void transpose4(const f8 (&r)[4], f8& a, f8& b, f8& c, f8& d) {
+    const f8 t0 = SHUFFLE(r[0], r[1], 0, 8, 1, 9, 4, 12, 5, 13);
+    const f8 t1 = SHUFFLE(r[0], r[1], 2, 10, 3, 11, 6, 14, 7, 15);
+    const f8 t2 = SHUFFLE(r[2], r[3], 0, 8, 1, 9, 4, 12, 5, 13);
+    const f8 t3 = SHUFFLE(r[2], r[3], 2, 10, 3, 11, 6, 14, 7, 15);
+    a = SHUFFLE(t0, t2, 0, 1, 8, 9, 4, 5, 12, 13);
+    b = SHUFFLE(t0, t2, 2, 3, 10, 11, 6, 7, 14, 15);
+    c = SHUFFLE(t1, t3, 0, 1, 8, 9, 4, 5, 12, 13);
+    d = SHUFFLE(t1, t3, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+// The same of rows that lie side by side.
+LANES_INLINE void transpose4(const float* rows, f8& a, f8& b, f8& c, f8& d) {
+    f8 r[4];
+    for (int k = 0; k < 4; k++) r[k] = two_fours(rows + 4 * k, rows + 4 * k + 16);
+    transpose4(r, a, b, c, d);
+}
+
 // Half precision, of numbers of 0 or more that are finite there.
 LANES_INLINE i8 to_half(f8 x) {
 #if defined(__F16C__) && defined(__AVX2__)

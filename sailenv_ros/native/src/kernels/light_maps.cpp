@@ -57,7 +57,7 @@ SAILENV_KERNEL(blur_directions)
                     memcpy(texels + 4 * k, radiance + 4 * static_cast<int64_t>(place[k]), 16);
                 }
                 f8 r, g, blue, unused;
-                sailenv::transpose4(texels, r, g, blue, unused);
+                transpose4(texels, r, g, blue, unused);
                 sum[0] = sum[0] + r * weight;
                 sum[1] = sum[1] + g * weight;
                 sum[2] = sum[2] + blue * weight;

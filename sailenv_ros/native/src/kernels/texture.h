@@ -75,27 +75,4 @@ LANES_INLINE f4 sample_halves(const uint16_t* upper, const uint16_t* lower, floa
     return bilinear(load_halves(upper), load_halves(lower), across, down);
 }
 
-// Eight pixels of four numbers, side by side, to four vectors.
-LANES_INLINE void transpose4(const float* pixels, f8& a, f8& b, f8& c, f8& d) {
-    f8 r[4];
-    for (int k = 0; k < 4; k++) {
-        const f4 low = *reinterpret_cast<const f4_any*>(pixels + 4 * k);
-        const f4 high = *reinterpret_cast<const f4_any*>(pixels + 4 * k + 16);
-#if defined(__AVX__)
-        r[k] = (f8)_mm256_insertf128_ps(_mm256_castps128_ps256((__m128)low), (__m128)high, 1);
-#else
-        memcpy(&r[k], &low, 16);
-        memcpy(reinterpret_cast<char*>(&r[k]) + 16, &high, 16);
-#endif
-    }
-    const f8 t0 = SHUFFLE(r[0], r[1], 0, 8, 1, 9, 4, 12, 5, 13);
-    const f8 t1 = SHUFFLE(r[0], r[1], 2, 10, 3, 11, 6, 14, 7, 15);
-    const f8 t2 = SHUFFLE(r[2], r[3], 0, 8, 1, 9, 4, 12, 5, 13);
-    const f8 t3 = SHUFFLE(r[2], r[3], 2, 10, 3, 11, 6, 14, 7, 15);
-    a = SHUFFLE(t0, t2, 0, 1, 8, 9, 4, 5, 12, 13);
-    b = SHUFFLE(t0, t2, 2, 3, 10, 11, 6, 7, 14, 15);
-    c = SHUFFLE(t1, t3, 0, 1, 8, 9, 4, 5, 12, 13);
-    d = SHUFFLE(t1, t3, 2, 3, 10, 11, 6, 7, 14, 15);
-}
-
 }  // namespace sailenv
