@@ -29,6 +29,7 @@ __all__ = [
     "reach_of_points",
     "reach_view",
     "tells_depth",
+    "unit_ray_planes",
     "unit_rays",
 ]
 
@@ -80,14 +81,19 @@ def reach_lines(
 
 
 @lru_cache(maxsize=8)
+def unit_ray_planes(lens: CameraIntrinsics) -> NDArray[np.float64]:
+    """Return (3, H, W) float64 read-only: x, y, z of `unit_rays`, as kernels read them."""
+    planes = np.ascontiguousarray(np.moveaxis(lens.unit_rays(), -1, 0))
+    planes.flags.writeable = False
+    return planes
+
+
 def unit_rays(lens: CameraIntrinsics) -> NDArray[np.float64]:
     """Return (H, W, 3) float64 read-only: where each pixel's centre looks, in the optical frame.
 
     nan where the lens sees nothing.
     """
-    rays = np.ascontiguousarray(lens.unit_rays())
-    rays.flags.writeable = False
-    return rays
+    return np.moveaxis(unit_ray_planes(lens), 0, -1)
 
 
 @lru_cache(maxsize=8)
@@ -172,7 +178,7 @@ def bent_lenses(begin: CameraIntrinsics, end: CameraIntrinsics) -> BentLenses | 
         return None
     straight = end.is_pinhole
     return BentLenses(
-        from_rays=None if tells_depth(begin) else unit_rays(begin),
+        from_rays=None if tells_depth(begin) else unit_ray_planes(begin),
         from_parallel=begin.is_parallel,
         to_model=-1 if straight else end.law.model.number,
         to_coefficients=_NO_COEFFICIENTS if straight else end.law.padded,

@@ -69,7 +69,7 @@ class BentLenses(NamedTuple):
 
     Attributes
     ----------
-    from_rays : (H, W, 3) float64 or None
+    from_rays : (3, H, W) float64 or None
         Unit rays of the one picture's pixels, along which its depth is; nan where the lens sees
         nothing. None where depth is along the axis.
     from_parallel : bool
@@ -230,7 +230,7 @@ def move_points(
     if bent is not None:
         checked("to_coefficients", bent.to_coefficients, np.float64, (MOST_COEFFICIENTS,))
         if bent.from_rays is not None:
-            checked("from_rays", bent.from_rays, np.float64, (*depth.shape, 3))
+            checked("from_rays", bent.from_rays, np.float64, (3, *depth.shape))
     for name, array in outputs.items():
         dtype, channels = MOTION_OUTPUTS[name]
         checked(name, array, dtype, (*depth.shape, *channels))
@@ -298,7 +298,7 @@ def transform_points(
     transforms : (R, 3, 4) float64
         Other axes from the camera's optical frame, for each instance.
     lens : (1,) lens.LENS
-    rays : (H, W, 3) float64 or None
+    rays : (3, H, W) float64 or None
         As `BentLenses.from_rays`.
     parallel : bool
         As `BentLenses.from_parallel`.
@@ -318,7 +318,7 @@ def transform_points(
     checked("transforms", transforms, np.float64, (None, 3, 4))
     checked("lens", lens, LENS, (1,))
     if rays is not None:
-        checked("rays", rays, np.float64, (*depth.shape, 3))
+        checked("rays", rays, np.float64, (3, *depth.shape))
     points = np.empty((*depth.shape, 3), np.float32)
     _TRANSFORM(
         threads,

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import tells_depth, unit_rays
+from sailenv_ros.frame.lens_rays import tells_depth, unit_ray_planes, unit_rays
 from sailenv_ros.native.motion_kernels import RowMotions, transform_points
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.deformation import Deformation
@@ -211,7 +211,7 @@ def rigid_points(
         rows,
         transforms,
         lens.lens_record,
-        rays=None if tells_depth(lens) else unit_rays(lens),
+        rays=None if tells_depth(lens) else unit_ray_planes(lens),
         parallel=lens.is_parallel,
         threads=threads,
     )

@@ -177,10 +177,9 @@ def _sees_ahead_alone(rays: Doubles) -> bool:
 
 def _faces_of(rays: Doubles) -> NDArray[np.uint8]:
     """Return the face of each ray (R, C, 3): the axis that it follows most, the first of equals."""
-    x, y, most = (np.ascontiguousarray(part) for part in np.moveaxis(rays, -1, 0))
-    faces = np.zeros(most.shape, np.uint8)
-    behind = -most
-    for number, along in enumerate((x, -x, y, -y, behind), 1):
+    x, y, z = (np.ascontiguousarray(part) for part in np.moveaxis(rays, -1, 0))
+    faces, most = np.zeros(z.shape, np.uint8), z.copy()
+    for number, along in enumerate((x, -x, y, -y, -z), 1):
         np.putmask(faces, along > most, number)
         np.maximum(most, along, out=most)
     return faces

@@ -24,7 +24,7 @@
     FIELD(const sailenv::Lens*, from_lens)                                                   \
     FIELD(const sailenv::Lens*, to_lens)                                                     \
     FIELD(int64_t, bent)                  /* 1: a lens is no pin-hole; the next count */     \
-    FIELD(const double*, from_rays)       /* (H, W, 3): unit rays, `depth` is along */       \
+    FIELD(const double*, from_rays)       /* (3, H, W): unit rays, `depth` is along */       \
                                           /* them; else null, and it is along the axis */    \
     FIELD(int64_t, from_parallel)         /* 1: rays are; see `Sight` of lens.h */           \
     FIELD(int64_t, to_model)              /* of the other lens; below 0: a pin-hole */       \
@@ -323,6 +323,7 @@ void move_chunk(const Motion& in, const double* columns, Wanted wanted, int64_t 
 struct Pixels {
     const sailenv::Lens& lens;
     const double* rays;
+    int64_t count;
     bool parallel;
 };
 
@@ -331,7 +332,7 @@ LANES_INLINE void ray_of(const Pixels& in, int64_t at, int64_t u, int64_t v, dou
                          double* ray) {
     begin[0] = begin[1] = 0.0;
     if (in.rays != nullptr) {
-        for (int k = 0; k < 3; k++) ray[k] = in.rays[3 * at + k];
+        for (int k = 0; k < 3; k++) ray[k] = in.rays[k * in.count + at];
         return;
     }
     const double x = sailenv::ray_x(in.lens, static_cast<double>(u)),
@@ -406,11 +407,22 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
     const uint16_t* ids = in.instance + at;
     const sailenv::Lens& to = *in.to_lens;
     const double rate = 1.0 / in.duration;
-    const Pixels pixels{*in.from_lens, in.from_rays, in.from_parallel != 0};
+    const Pixels pixels{*in.from_lens, in.from_rays, in.height * in.width, in.from_parallel != 0};
     MovedPoints p;
     Places places;
     const float* depths = in.depth + at;
-    for (int64_t k = 0; k < count; k++) {
+    int64_t found = 0;
+    for (; in.from_rays != nullptr && found + 8 <= count; found += 8) {
+        const d8 z = __builtin_convertvector(load(depths + found), d8), zero = {};
+        const l8 at_infinity = z == INFINITE;
+        const d8 reach = at_infinity ? zero + 1.0 : z;
+        for (int axis = 0; axis < 3; axis++) {
+            const double* rays = in.from_rays + axis * pixels.count + at;
+            put(p.from[axis] + found, reach * vector_of(rays + found));
+        }
+        put(p.shift + found, at_infinity ? zero : zero + 1.0);
+    }
+    for (int64_t k = found; k < count; k++) {
         const double z = depths[k];
         double point[3];
         point_of(pixels, at + k, u + k, v, z, point);
@@ -543,7 +555,7 @@ void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t first_v, int64_
                         int64_t count, const Project& project) {
     const sailenv::Lens& to = *in.to_lens;
     const double rate = 1.0 / in.duration;
-    const Pixels pixels{*in.from_lens, in.from_rays, in.from_parallel != 0};
+    const Pixels pixels{*in.from_lens, in.from_rays, in.height * in.width, in.from_parallel != 0};
     Places all_places[ROLLING_ROWS];
     RowSearch searches[ROLLING_ROWS] = {};
     for (int64_t j = 0; j < ROLLING_ROWS; j++) searches[j].found = static_cast<double>(first_v + j);
@@ -742,7 +754,7 @@ void transform_point(const Transform& in, const Pixels& pixels, int64_t row, int
 SAILENV_KERNEL(transform_points)(int64_t threads, const Transform* given) {
     const Transform in = *given;
     if (in.height < 0 || in.width < 0 || in.rows < 1) return sailenv::STATUS_INVALID_ARGUMENT;
-    const Pixels pixels{*in.lens, in.rays, in.parallel != 0};
+    const Pixels pixels{*in.lens, in.rays, in.height * in.width, in.parallel != 0};
     sailenv::parallel_for(threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
         for (int64_t v = begin; v < end; v++) {
             const int64_t first = v * in.width, last = first + in.width;
