@@ -34,17 +34,6 @@ struct Sample {
 constexpr Sample PATTERN[SAMPLES] = {{1, 1, 4}, {1, 0, 2}, {0, 1, 2}, {2, 1, 2}, {1, 2, 2},
                                      {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {2, 2, 1}};
 
-// Eight numbers from every second place.
-LANES_INLINE i8 every_second(const uint32_t* p) {
-    const i8 low = load(reinterpret_cast<const int32_t*>(p));
-    const i8 high = load(reinterpret_cast<const int32_t*>(p + 8));
-    return SHUFFLE(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
-}
-LANES_INLINE f8 every_second(const float* p) {
-    const f8 low = load(p), high = load(p + 8);
-    return SHUFFLE(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
-}
-
 // The plane of a triangle; `normal` has any length. 1 / depth is the ray's share along the plane's
 // normal, so its slopes are the normal; those of -depth are, where it is 1 along the axis.
 struct Plane {
@@ -54,7 +43,8 @@ struct Plane {
 LANES_INLINE Plane plane_of(const Shading& s, const Triangle& t) {
     vec3 normal = s.lens.direction(t.inverse_depth);
     if (s.sight == Sight::PARALLEL) normal.z = 1.0f;
-    if (s.table != nullptr) normal = s.camera_from_face[t.face] * normal;
+    // A face that is alone has the camera's frame.
+    if (s.table != nullptr && s.table->several) normal = s.camera_from_face[t.face] * normal;
     return {normal, dot(normal, normal)};
 }
 

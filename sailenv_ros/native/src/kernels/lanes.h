@@ -173,6 +173,16 @@ LANES_INLINE void transpose(f8 r[8]) {
     r[7] = SHUFFLE(s3, s7, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
+// Eight numbers from every second place.
+LANES_INLINE i8 every_second(const uint32_t* p) {
+    const i8 low = load(reinterpret_cast<const int32_t*>(p));
+    const i8 high = load(reinterpret_cast<const int32_t*>(p + 8));
+    return SHUFFLE(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+}
+LANES_INLINE f8 every_second(const float* p) {
+    const f8 low = load(p), high = load(p + 8);
+    return SHUFFLE(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+}
 // Four numbers from each of two places.
 LANES_INLINE f8 two_fours(const float* a, const float* b) {
     const f4 low = *reinterpret_cast<const f4_any*>(a), high = *reinterpret_cast<const f4_any*>(b);

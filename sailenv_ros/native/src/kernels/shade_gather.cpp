@@ -200,13 +200,15 @@ LANES_INLINE void prefetch_corners(const Shading& s, const Triangle& t) {
 }
 
 // Asks for what the table says of the next row's pixels.
-LANES_INLINE void prefetch(const LensTable& lens, int32_t y, int32_t x) {
+LANES_INLINE void prefetch(const LensTable& lens, int32_t y, int32_t x, bool with_places) {
     const int64_t plane = lens.step_rows * lens.step_stride;
     const float *steps = lens.steps + y * lens.step_stride + x,
                 *places = lens.x + y * lens.stride + x;
     for (int32_t i = 0; i < CHUNK; i += 16) {
-        __builtin_prefetch(places + i);
-        __builtin_prefetch(lens.y + y * lens.stride + x + i);
+        if (with_places) {
+            __builtin_prefetch(places + i);
+            __builtin_prefetch(lens.y + y * lens.stride + x + i);
+        }
         for (int k = 0; k < 4; k++) __builtin_prefetch(steps + k * plane + i);
     }
 }
@@ -344,16 +346,27 @@ void gather(const Shading& s, Chunk& c) {
 void gather_through_lens(const Shading& s, Chunk& c) {
     const LensTable& lens = *s.table;
     const int64_t first = c.y * lens.stride + c.x;
+    // The centres of pixels are among the fine samples, which were looked at just now.
+    const LensTable* fine = s.fine_table;
+    const int64_t fine_first = fine == nullptr ? 0 : (2 * c.y + 1) * fine->stride + 2 * c.x + 1;
     c.parallel = false;
     for (int32_t i = 0; i < c.padded; i += 8) {
-        const f8 x = load(lens.x + first + i), y = load(lens.y + first + i);
+        f8 x, y;
+        if (fine == nullptr) {
+            x = load(lens.x + first + i);
+            y = load(lens.y + first + i);
+        } else {
+            x = every_second(fine->x + fine_first + 2 * i);
+            y = every_second(fine->y + fine_first + 2 * i);
+        }
         const i8 seen = x == x;
+        const i8 face = lens.several ? faces_at(lens.face + first + i) : splat(0);
         store(c.at_x + i, seen ? x : splat(0.0f));
         store(c.at_y + i, seen ? y : splat(0.0f));
-        store(c.face + i, seen ? faces_at(lens.face + first + i) : splat(NO_FACE));
+        store(c.face + i, seen ? face : splat(NO_FACE));
         set_steps(c, i, steps_at(lens, c.y, c.x + i));
     }
-    prefetch(lens, c.y + 1, c.x);
+    prefetch(lens, c.y + 1, c.x, fine == nullptr);
     gather_runs(s, c, [&](const Triangle& t) { return face_planes(s, t); });
     turn_slopes(c);
 }
