@@ -16,7 +16,7 @@ constexpr float NEAR_CELLS = 1.0f, WIDE_CELLS = 4.0f;  // as far as `bend` and `
 // Of tiles of a group, those of the first column.
 constexpr uint32_t FIRST_COLUMN =
     ((1u << LENS_GROUP_TILES) - 1) / ((1u << LENS_GROUP_COLUMNS) - 1);
-constexpr int32_t WIDE_SAMPLES = 16, HIGH_SAMPLES = 8;
+constexpr int32_t WIDE_SAMPLES = 24, HIGH_SAMPLES = 8;
 
 // Bits `first` to `last` of so many; beyond both ends there are none.
 uint32_t bits_between(int32_t first, int32_t last, int32_t count) {
@@ -304,6 +304,8 @@ void draw_tiles(const Triangle& t, uint32_t number, const Part& part, const Proj
 
 }  // namespace
 
+LANES_INLINE f4 four(const FaceNode* node) { return *reinterpret_cast<const f4_any*>(node); }
+
 void place_corners(const CubeFace& face, const float* x, const float* y, const float* z,
                    int32_t count, CornerPlace* out) {
     for (int32_t k = 0; k < count; k++) {
@@ -322,12 +324,11 @@ void place_corners(const CubeFace& face, const float* x, const float* y, const f
         const FaceNode *upper = face.nodes + j * (FACE_CELLS + 1) + i,
                        *lower = upper + FACE_CELLS + 1;
         const float right = across - static_cast<float>(i), low = down - static_cast<float>(j);
-        const auto mean = [&](float a, float b, float c, float d) {
-            const float above = a + (b - a) * right, below = c + (d - c) * right;
-            return above + (below - above) * low;
-        };
-        place.u = mean(upper[0].u, upper[1].u, lower[0].u, lower[1].u);
-        place.v = mean(upper[0].v, upper[1].v, lower[0].v, lower[1].v);
+        const f4 above = four(upper) + (four(upper + 1) - four(upper)) * right,
+                 below = four(lower) + (four(lower + 1) - four(lower)) * right,
+                 mean = above + (below - above) * low;
+        place.u = mean[0];
+        place.v = mean[1];
         place.bend = upper->bend;
         place.wide_bend = upper->wide_bend;
     }

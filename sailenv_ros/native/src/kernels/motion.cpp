@@ -411,6 +411,13 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
     MovedPoints p;
     Places places;
     const float* depths = in.depth + at;
+    if (in.from_rays != nullptr) {
+        // Rays of the next chunk.
+        for (int axis = 0; axis < 3; axis++) {
+            const double* rays = in.from_rays + axis * pixels.count + at + count;
+            for (int64_t k = 0; k < CHUNK; k += 8) __builtin_prefetch(rays + k, 0, 2);
+        }
+    }
     int64_t found = 0;
     for (; in.from_rays != nullptr && found + 8 <= count; found += 8) {
         const d8 z = __builtin_convertvector(load(depths + found), d8), zero = {};
