@@ -203,7 +203,7 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
                 const int64_t at = (2 * y + sample.row) * lens.stride + 2 * x + sample.column;
                 at_x = lens.x[at];
                 at_y = lens.y[at];
-                face = lens.face[at];
+                face = lens.several ? lens.face[at] : 0;
                 if (!(at_x == at_x)) {
                     // What the lens does not see counts as what it sees beside it.
                     if (number == 0) return;

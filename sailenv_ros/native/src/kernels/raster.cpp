@@ -290,6 +290,8 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
     const uint32_t* vertices = part.vertex_indices + cluster.first_index;
     const float *x = set.x.data() + corners_at, *y = set.y.data() + corners_at,
                 *z = set.z.data() + corners_at;
+    const bool bends = DRAWN == Drawn::PERSPECTIVE && p.table != nullptr;
+    const CornerPlace* places = bends ? set.places.data() + corners_at : nullptr;
     for (int32_t k = 0; k < count; k++) {
         for (int j = 0; j < 3; j++) {
             const uint32_t corner = corners[3 * k + j];
@@ -297,6 +299,7 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
             r.corner[3 * j + 1][k] = y[corner];
             r.corner[3 * j + 2][k] = z[corner];
             r.vertex[j][k] = static_cast<int32_t>(vertices[3 * k + j]);
+            if (bends) r.place[j][k] = places + corner;
         }
     }
     const bool two_sided = DRAWN == Drawn::SHADOW || (part.flags & PART_DOUBLE_SIDED);
@@ -304,9 +307,7 @@ int64_t set_cluster_up(const SeenCluster& seen, const Part& part, int64_t corner
     const bool back = seen.facing == FACING_BACK || (seen.facing == FACING_BOTH && two_sided);
     const int32_t padded = (count + 7) & ~7;
     pad(r, count);
-    if (p.table != nullptr) {
-        const CornerPlace* places = set.places.data() + corners_at;
-        for (int32_t k = 0; k < 3 * count; k++) r.place[k % 3][k / 3] = places + corners[k];
+    if (bends) {
         for (int32_t k = count; k < padded; k++) {
             for (int j = 0; j < 3; j++) r.place[j][k] = places;
         }
