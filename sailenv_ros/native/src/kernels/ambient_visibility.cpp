@@ -427,8 +427,9 @@ SAILENV_KERNEL(ambient_visibility)(int64_t threads, const Ambient* given) {
     if (!depth || !points || !tiles || !raw || !bands) return sailenv::STATUS_OUT_OF_MEMORY;
     uint8_t* own = tiles.get() + tile_count;
     memset(tiles.get(), 0, static_cast<size_t>(2 * tile_count));
-    const Samples samples{rows,        columns,      in.inverse, depth.get(),
-                          tiles.get(), tile_columns, in.rays,    in.rays != nullptr ? points.get() : nullptr};
+    const Samples samples{
+        rows,        columns,      in.inverse, depth.get(),
+        tiles.get(), tile_columns, in.rays,    in.rays == nullptr ? nullptr : points.get()};
     sailenv::parallel_for(threads, rows, TILE, [&](int64_t first, int64_t last, int64_t) {
         halve_rows(in.surface, width, in.known, samples, own + first / TILE * tile_columns, first,
                    last);

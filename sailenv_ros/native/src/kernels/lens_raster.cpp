@@ -12,10 +12,9 @@ constexpr float LEAST_DEPTH_M = 1e-3f;  // corners nearer than that have no plac
 constexpr float PLACE_MARGIN = 1e-5f;   // around the corners' places
 constexpr double CLIP_MARGIN = 1e-4;    // the same, of triangles that come near the eye's plane
 constexpr float NEAR_CELLS = 1.0f, WIDE_CELLS = 4.0f;  // as far as `bend` and `wide_bend` are known
-// Triangles whose bounds are wider or higher than that are drawn tile by tile.
 // Of tiles of a group, those of the first column.
-constexpr uint32_t FIRST_COLUMN =
-    ((1u << LENS_GROUP_TILES) - 1) / ((1u << LENS_GROUP_COLUMNS) - 1);
+constexpr uint32_t FIRST_COLUMN = ((1u << LENS_GROUP_TILES) - 1) / ((1u << LENS_GROUP_COLUMNS) - 1);
+// Triangles whose bounds are wider or higher than that are drawn tile by tile.
 constexpr int32_t WIDE_SAMPLES = 24, HIGH_SAMPLES = 8;
 
 // Bits `first` to `last` of so many; beyond both ends there are none.
@@ -51,22 +50,24 @@ SampleBox samples_within(const CubeFace& face, const float* low, const float* hi
     return box;
 }
 
-// Of a face's samples a rectangle that a triangle which comes near the eye's plane reaches; false
-// if it reaches none.
+// The rectangle of a face's places that a triangle reaches which comes near the eye's plane; false
+// if it reaches none. The triangle is clipped side by side (Sutherland and Hodgman).
 bool clip_to_face(const CubeFace& face, const ClusterRows& r, int32_t k, float* low, float* high) {
     struct Corner {
         double at[3];
     };
-    Corner polygon[8], clipped[8];
+    constexpr int32_t MOST = 8;  // corners; rounding may not make more
+    Corner polygon[MOST], clipped[MOST + 2];
     int32_t count = 3;
     for (int32_t j = 0; j < 9; j++) polygon[j / 3].at[j % 3] = r.corner[j][k];
     for (int32_t side = 0; side < 4; side++) {
         const int32_t axis = side / 2;
         const double sign = side % 2 ? -1.0 : 1.0;
-        const double limit = side % 2 ? face.high[axis] + CLIP_MARGIN : face.low[axis] - CLIP_MARGIN;
+        const double limit =
+            side % 2 ? face.high[axis] + CLIP_MARGIN : face.low[axis] - CLIP_MARGIN;
         const auto inside = [&](const Corner& c) { return sign * (c.at[axis] - limit * c.at[2]); };
         int32_t kept = 0;
-        for (int32_t j = 0; j < count; j++) {
+        for (int32_t j = 0; j < count && kept < MOST; j++) {
             const Corner &from = polygon[j], &to = polygon[(j + 1) % count];
             const double here = inside(from), there = inside(to);
             if (here >= 0.0) clipped[kept++] = from;
@@ -76,7 +77,7 @@ bool clip_to_face(const CubeFace& face, const ClusterRows& r, int32_t k, float* 
                 border.at[i] = from.at[i] + (to.at[i] - from.at[i]) * (here / (here - there));
             }
         }
-        count = kept;
+        count = std::min(kept, MOST);
         std::copy(clipped, clipped + count, polygon);
     }
     for (int32_t axis = 0; axis < 2; axis++) {
@@ -153,7 +154,7 @@ struct PlaceFunction {
 
 // A function of an edge. Which bounds of tiles it is the most at is known once for all of them.
 struct EdgeFunction : PlaceFunction {
-    const float least;  // of samples inside
+    const float least;                                 // of samples inside
     const ptrdiff_t most_x, most_y, least_x, least_y;  // bounds, from the first one
 
     explicit EdgeFunction(const float* edge)
@@ -275,17 +276,16 @@ void draw_tiles(const Triangle& t, uint32_t number, const Part& part, const Proj
     for (int32_t down = first_row / LENS_GROUP_ROWS; down <= last_row / LENS_GROUP_ROWS; down++) {
         const LensTiles* groups = lens.tiles + down * lens.tile_groups;
         const int32_t tile_row = down * LENS_GROUP_ROWS;
-        const uint32_t rows = bits_between((first_row - tile_row) * LENS_GROUP_COLUMNS,
-                                           (last_row + 1 - tile_row) * LENS_GROUP_COLUMNS - 1,
-                                           LENS_GROUP_TILES);
+        const uint32_t rows =
+            bits_between((first_row - tile_row) * LENS_GROUP_COLUMNS,
+                         (last_row + 1 - tile_row) * LENS_GROUP_COLUMNS - 1, LENS_GROUP_TILES);
         for (int32_t across = first / LENS_GROUP_COLUMNS; across <= last / LENS_GROUP_COLUMNS;
              across++) {
             uint32_t tiles = drawing.reached(groups[across]);
             if (tiles == 0) continue;
             const int32_t column = across * LENS_GROUP_COLUMNS;
             tiles &= rows &
-                     bits_between(first - column, last - column, LENS_GROUP_COLUMNS) *
-                         FIRST_COLUMN;
+                     bits_between(first - column, last - column, LENS_GROUP_COLUMNS) * FIRST_COLUMN;
             const uint32_t covered = drawing.covered(groups[across]);
             for (; tiles != 0; tiles &= tiles - 1) {
                 const int32_t k = __builtin_ctz(tiles), row = tile_row + k / LENS_GROUP_COLUMNS,
@@ -302,9 +302,9 @@ void draw_tiles(const Triangle& t, uint32_t number, const Part& part, const Proj
     }
 }
 
-}  // namespace
-
 LANES_INLINE f4 four(const FaceNode* node) { return *reinterpret_cast<const f4_any*>(node); }
+
+}  // namespace
 
 void place_corners(const CubeFace& face, const float* x, const float* y, const float* z,
                    int32_t count, CornerPlace* out) {

@@ -20,7 +20,7 @@ constexpr int32_t BLOCK_CELLS = 8;                            // of a block of t
 constexpr int32_t LENS_TILE_COLUMNS = 8, LENS_TILE_ROWS = 8;  // of samples
 constexpr int32_t LENS_GROUP_COLUMNS = 2, LENS_GROUP_ROWS = 4;  // of a group of tiles
 constexpr int32_t LENS_GROUP_TILES = LENS_GROUP_COLUMNS * LENS_GROUP_ROWS;
-constexpr int32_t NO_FACE = -1;                               // where the lens sees nothing
+constexpr int32_t NO_FACE = -1;  // where the lens sees nothing
 constexpr float UNKNOWN_BEND = 1e30f;
 
 // Where a place of a face lies in the picture, at the nodes of a grid of cells [samples]. Within a
