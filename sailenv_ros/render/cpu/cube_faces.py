@@ -242,7 +242,9 @@ def _tiles(
         below = np.full_like(own[:1], filling)
         below[:, :, :-1] = own[:1, :, 1:]
         samples = np.concatenate([own, below]).reshape(-1, rows, group_rows, columns, group_columns)
-        return samples.transpose(0, 1, 3, 2, 4).reshape(-1, rows, columns, group_rows * group_columns)
+        return samples.transpose(0, 1, 3, 2, 4).reshape(
+            -1, rows, columns, group_rows * group_columns
+        )
 
     places = [split(values, np.nan) for values in (x, y)]
     bits = np.left_shift(1, split(face, 0), dtype=np.int32)

@@ -154,8 +154,8 @@ struct PlaceFunction {
 
 // A function of an edge. Which bounds of tiles it is the most at is known once for all of them.
 struct EdgeFunction : PlaceFunction {
-    const float least;                                 // of samples inside
-    const ptrdiff_t most_x, most_y, least_x, least_y;  // bounds, from the first one
+    const float least;                               // of samples inside
+    const int64_t most_x, most_y, least_x, least_y;  // bounds, from the first one
 
     explicit EdgeFunction(const float* edge)
         : PlaceFunction(edge),
@@ -174,8 +174,8 @@ struct EdgeFunction : PlaceFunction {
     }
 
 private:
-    static constexpr ptrdiff_t LOW_X = 0, LOW_Y = LENS_GROUP_TILES, HIGH_X = 2 * LENS_GROUP_TILES,
-                               HIGH_Y = 3 * LENS_GROUP_TILES;
+    static constexpr int64_t LOW_X = 0, LOW_Y = LENS_GROUP_TILES, HIGH_X = 2 * LENS_GROUP_TILES,
+                             HIGH_Y = 3 * LENS_GROUP_TILES;
 };
 
 // A triangle and where it is drawn.
