@@ -55,7 +55,12 @@ _untidied_bytes = TIDY_EACH_BYTES
 
 
 def cached_arrays(
-    kind: str, key: Iterable[object], make: Callable[[], Arrays], *, code: str = ""
+    kind: str,
+    key: Iterable[object],
+    make: Callable[[], Arrays],
+    *,
+    code: str = "",
+    keep: bool = True,
 ) -> Arrays:
     """Return the arrays of a key: those that are kept, or new ones, which are kept then.
 
@@ -69,6 +74,8 @@ def cached_arrays(
         Returns them. An error of it goes through, and nothing is kept.
     code : str
         What `code_digest` says of the code that makes them.
+    keep : bool
+        False returns new ones as they were made, and keeps nothing.
 
     Returns
     -------
@@ -82,7 +89,7 @@ def cached_arrays(
     if kept is not None:
         return kept
     made = make()
-    return _kept(path, made)
+    return _kept(path, made) if keep else made
 
 
 def array_folder() -> Path:

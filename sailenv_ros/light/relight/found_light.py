@@ -7,12 +7,18 @@ from typing import Protocol, TypeAlias
 
 from sailenv_ros.types.baked_light import ObjectLight
 
-__all__ = ["MOST", "FoundLight", "FoundShadows", "KnownLight"]
+__all__ = ["MOST", "MOST_PLACES", "FoundLight", "FoundShadows", "KnownLight"]
 
-MOST = 3
-"""Number of shadows that are kept: a scene begins, and what was put into it comes to rest."""
+MOST_PLACES = 3
+"""Changes of what rests after which nothing is kept: a scene begins, what moves at first has no
+shadow, and it comes to rest."""
 
-KnownLight: TypeAlias = tuple[tuple[object, ...], ObjectLight]
+MOST = 4
+"""Number of shadows that are kept."""
+
+Places: TypeAlias = tuple[object, ...]
+
+KnownLight: TypeAlias = tuple[Places, ObjectLight]
 """Light on an object, after all that it depends on."""
 
 
@@ -33,14 +39,21 @@ class FoundLight:
         Light on objects, by instance id.
     shadows : dict of tuple to FoundShadows
         Shadows, which nobody changes, by the places of the objects that rested at first, and then
-        after each change: it counts from where shadows were found. The last `MOST` are kept.
+        after each change: it counts from where shadows were found.
+    asked : set of tuple
+        Places whose shadows were asked for again. Where `MOST` are kept, others go first, and of
+        these the ones after most changes.
     """
 
     objects: dict[int, KnownLight] = field(default_factory=dict)
-    shadows: dict[tuple[object, ...], FoundShadows] = field(default_factory=dict)
+    shadows: dict[Places, FoundShadows] = field(default_factory=dict)
+    asked: set[Places] = field(default_factory=set)
 
-    def keep(self, places: tuple[object, ...], shadows: FoundShadows) -> None:
+    def keep(self, places: Places, shadows: FoundShadows) -> None:
         """Keep shadows by places."""
-        for oldest in list(self.shadows)[: len(self.shadows) + 1 - MOST]:
-            self.shadows.pop(oldest, None)
+        while len(self.shadows) >= MOST:
+            others = [one for one in list(self.shadows) if one not in self.asked]
+            dropped = max(others or list(self.shadows), key=len)
+            self.shadows.pop(dropped, None)
+            self.asked.discard(dropped)
         self.shadows[places] = shadows.copy()

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,10 +34,13 @@ from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Model
 
-__all__ = ["ObjectLighting", "PlacedObject", "SurfacePoints", "near_changes"]
+__all__ = ["ObjectLighting", "Place", "PlacedObject", "SurfacePoints", "near_changes"]
 
 Floats = NDArray[np.float32]
 Doubles = NDArray[np.float64]
+
+Place: TypeAlias = tuple[int, Model, tuple[float, float, float], bytes]
+"""Instance id, model, scale, and bytes of the pose."""
 
 WHOLE, INSIDE = 2, 3
 """States of points: all of their light is wanted; they lie inside of something."""
@@ -64,7 +68,7 @@ class PlacedObject(PlacedModel):
     moves: bool = False
 
     @property
-    def place(self) -> tuple[object, ...]:
+    def place(self) -> Place:
         """Key of the object at its place; it keeps the model, told by identity."""
         return self.id, self.model, self.scale, self.world_from_body.tobytes()
 

@@ -28,6 +28,7 @@ from sailenv_ros.light.relight.shadow_maps import (
     ShadowMaps,
     with_neighbours,
 )
+from sailenv_ros.light.relight.texel_changes import TexelChanges
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
     direct_light_delta,
@@ -58,6 +59,9 @@ LEAST_DIRECT, LEAST_SOFT = 0.02, 0.1
 """Shares of what small lamps, and area lights, give a patch below which no edges of their shadows
 are seen."""
 
+MOST_APART = 128
+"""Where more objects stand, kernels may look at those too that do not reach a point."""
+
 
 class ObjectShadows:
     """Shadows in a scene whose furniture stands where it stands.
@@ -82,12 +86,14 @@ class ObjectShadows:
         columns = 3 * len(lights) + len(self._records)
         patches = len(scene.patches.size)
         self._patches = PointChanges.none(patches, columns)
+        # As it was found: there are patches of which only their texels tell.
+        self._state = np.zeros(patches, np.uint8)
+        self._again = np.zeros(patches, bool)
         away = scene.positions - scene.patches.positions[scene.patches.of_texel]
         far = np.linalg.norm(away, axis=1)
         self._size, self._margin = scene.patches.means(far), np.zeros(patches, np.float32)
         np.maximum.at(self._margin, scene.patches.of_texel, far)
-        self._texels = np.zeros(0, np.intp)
-        self._at_texels = PointChanges.none(0, columns)
+        self._texels = TexelChanges.fresh(np.zeros(0, np.intp), 0, PointChanges.none(0, columns))
         self._things: dict[int, tuple[object, PlacedObject]] = {}
         self._maps = ShadowMaps(surfaces, len(self._lamps))
 
@@ -112,24 +118,25 @@ class ObjectShadows:
         if not left and not taken:
             return False
         self._things, self._threads = dict(things), threads
-        self._find(self._may_change([*left, *taken]))
+        self._find(self._may_change([*left, *taken]), [*left, *taken])
         return True
 
     def copy(self) -> ObjectShadows:
         """Return the same shadows, which change apart from these."""
         same = copy.copy(self)
         same._patches, same._maps = self._patches.copy(), self._maps.copy()
+        same._state = self._state.copy()
         return same
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """Return what was found, for `take`."""
+        """Return what was found, and where that was last, for `take`."""
         found = np.flatnonzero(self._patches.state).astype(np.int32)
-        patches = self._patches.at(found)
         return {
+            "again": np.flatnonzero(self._again).astype(np.int32),
             "patches": found,
-            "texels": self._texels,
-            **{f"patch_{name}": array for name, array in patches._asdict().items()},
-            **{f"texel_{name}": array for name, array in self._at_texels._asdict().items()},
+            "state": self._state[found],
+            **self._patches.at(found).arrays("patch"),
+            **self._texels.arrays(),
         }
 
     def take(
@@ -138,14 +145,16 @@ class ObjectShadows:
         arrays: Mapping[str, NDArray[Any]],
         threads: int,
     ) -> None:
-        """Take what was found of objects before, where none were known."""
+        """Take what was found before of objects, from where these shadows are."""
         self._things, self._threads = dict(things), threads
-        names = PointChanges._fields
-        self._patches.put(
-            arrays["patches"], PointChanges(*(arrays[f"patch_{name}"] for name in names))
-        )
-        self._texels = arrays["texels"]
-        self._at_texels = PointChanges(*(arrays[f"texel_{name}"] for name in names))
+        self._again = np.zeros(len(self._state), bool)
+        self._again[arrays["again"]] = True
+        self._maps.forget(self._again)
+        known, found = np.flatnonzero(self._patches.state), arrays["patches"]
+        self._patches.put(known, PointChanges.none(len(known), self._patches.change.shape[1]))
+        self._patches.put(found, PointChanges.of(arrays, "patch"))
+        self._state[known], self._state[found] = 0, arrays["state"]
+        self._texels = TexelChanges.of(arrays)
 
     def with_changes(
         self, lighting: ObjectLighting, surfaces: MovedSurfaces, near: Collection[int]
@@ -162,8 +171,8 @@ class ObjectShadows:
         """
         changed = ObjectShadows(lighting, surfaces)
         changed._things, changed._threads = self._things, self._threads
-        changed._texels, changed._at_texels = self._texels, self._at_texels
-        changed._patches = self._patches.copy()
+        changed._texels = self._texels
+        changed._patches, changed._state = self._patches.copy(), self._state.copy()
         every = [thing for _, thing in self._things.values()]
         asked = changed._may_change(every) & (surfaces.wanted == WHOLE)
         asked |= changed._may_change([self._things[id_][1] for id_ in near])
@@ -175,8 +184,9 @@ class ObjectShadows:
         if not self._things:
             return light
         after = self._maps.on(
-            self._maps_of(light), self._patches, self._texels, self._at_texels, self._threads
-        )
+            self._maps_of(light), self._patches,
+            self._texels.texels, self._texels.found, self._threads,
+        )  # fmt: skip
         bounced, direct = after[: len(light.layers)], after[len(light.layers) :]
         of_layer = dict(zip(self._records, direct, strict=True))
         layers = [
@@ -196,47 +206,78 @@ class ObjectShadows:
 
     def _may_change(self, things: Sequence[PlacedObject]) -> NDArray[np.bool_]:
         """Return (P,) bool: the patches whose light objects may change."""
+        surfaces = self._surfaces
+        places = surfaces.patch_positions, surfaces.patch_normals
+        return self._reached(things, *places, self._margin) & (surfaces.wanted > 0)
+
+    def _reached(
+        self, things: Sequence[PlacedObject], positions: Floats, normals: Floats, margins: Floats
+    ) -> NDArray[np.bool_]:
+        """Return (K,) bool: the points that objects reach, or the way of light to them."""
         found = reached_points(
-            self._world_of(things).record, self._surfaces.patch_positions,
-            self._surfaces.patch_normals, self._margin,
+            self._world_of(things).record, positions, normals, margins,
             _joined(self._records.values()), least=LEAST, threads=self._threads,
         )  # fmt: skip
-        return (found > 0) & (self._surfaces.wanted > 0)
+        reached: NDArray[np.bool_] = found > 0
+        return reached
 
-    def _find(self, again: NDArray[np.bool_]) -> None:
-        """Find what changes at patches, and at the texels of those where that is not enough."""
+    def _find(self, reached: NDArray[np.bool_], moved: Sequence[PlacedObject] = ()) -> None:
+        """Find what changes at patches, and at the texels of those where that is not enough.
+
+        Parameters
+        ----------
+        reached : (P,) bool
+            Patches whose light may be another one.
+        moved : sequence of PlacedObject
+            All that has changed, where it was and where it is: what nothing of it reaches is as it
+            was found. Without any, everything is found again.
+        """
         surfaces, patches = self._surfaces, self._patches
         every = [thing for _, (_, thing) in sorted(self._things.items())]
+        anew = not moved or len(every) + len(moved) > MOST_APART
         # Whether a patch is enough depends on those beside it, too.
-        again = with_neighbours(surfaces.scene, again)
+        self._again = again = with_neighbours(surfaces.scene, reached)
         self._maps.forget(again)
-        kept = ~again[surfaces.scene.patches.of_texel[self._texels]]
+        asked = np.flatnonzero(again & self._may_change(every))
+        fresh = np.ones(len(asked), bool) if anew else reached[asked]
+        found = patches.at(asked)._replace(state=self._state[asked])
         nothing = PointChanges.none(int(again.sum()), patches.change.shape[1])
         patches.put(np.flatnonzero(again), nothing)
-        asked = np.flatnonzero(again & self._may_change(every))
+        self._state[again] = 0
         world = self._world_of(every)
-        found = self._gathered(
-            world, surfaces.patch_positions, surfaces.patch_normals, asked, FINE.rays, 0
-        )
+        places = surfaces.patch_positions, surfaces.patch_normals
+        gathered = self._gathered(world, *places, asked[fresh], FINE.rays, 0)
+        found.put(np.flatnonzero(fresh), gathered)
         patches.put(asked, found)
+        self._state[asked] = found.state
         uneven = asked[self._is_uneven(asked, found)]
         # They say nothing of others.
         patches.state[uneven] = INSIDE
-        touching = found.nearness < TOUCHING * self._size[asked]
-        near, far = (
-            self._texels_of(np.intersect1d(uneven, asked[chosen]))
-            for chosen in (touching, ~touching)
-        )
-        fresh = [
-            self._gathered(
-                world, surfaces.positions, surfaces.normals, own, rays, len(patches.state)
-            )
-            for own, rays in ((near, FINE.texel_rays), (far, FINE.rays))
+        near = np.intersect1d(uneven, asked[found.nearness < TOUCHING * self._size[asked]])
+        texels = self._texels.texels
+        moves = np.ones(len(texels), bool)
+        if not anew:
+            at = surfaces.positions[texels], surfaces.normals[texels]
+            moves = self._reached(moved, *at, np.zeros(len(texels), np.float32))
+        known = self._texels.after(moves)
+        fresh_texels = [
+            self._found_at(known, world, self._texels_of(own), rays)
+            for own, rays in ((near, FINE.texel_rays), (np.setdiff1d(uneven, near), FINE.rays))
         ]
-        texels = np.concatenate([self._texels[kept], near, far])
-        order = np.argsort(texels)
-        self._texels = texels[order]
-        self._at_texels = self._at_texels.replaced(kept, fresh, order)
+        self._texels = known.replaced(~again[surfaces.scene.patches.of_texel[texels]], fresh_texels)
+
+    def _found_at(
+        self, known: TexelChanges, world: RayWorld, texels: NDArray[np.intp], rays: int
+    ) -> TexelChanges:
+        """Find what changes at texels, as far as it is not known."""
+        surfaces = self._surfaces
+        there, found_before = known.known(texels, rays)
+        found = PointChanges.none(len(texels), self._patches.change.shape[1])
+        found.put(np.flatnonzero(there), found_before)
+        places = surfaces.positions, surfaces.normals
+        fresh = self._gathered(world, *places, texels[~there], rays, len(self._state))
+        found.put(np.flatnonzero(~there), fresh)
+        return TexelChanges.fresh(texels, rays, found)
 
     def _is_uneven(self, asked: NDArray[np.intp], found: PointChanges) -> NDArray[np.bool_]:
         """Return where light changes within a patch."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import copy
 import itertools
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +60,15 @@ class PointChanges(NamedTuple):
         """Return those of points at which nothing changes."""
         nothing = np.zeros((points, channels), np.float32)
         return cls(np.zeros(points, np.uint8), nothing, np.full(points, FAR_M, np.float32))
+
+    @classmethod
+    def of(cls, arrays: Mapping[str, NDArray[Any]], kind: str) -> PointChanges:
+        """Return those that are kept in arrays under the name of a kind of points."""
+        return cls(*(arrays[f"{kind}_{name}"] for name in cls._fields))
+
+    def arrays(self, kind: str) -> dict[str, NDArray[Any]]:
+        """Return arrays to keep them in."""
+        return {f"{kind}_{name}": array for name, array in self._asdict().items()}
 
     def copy(self) -> PointChanges:
         """Return a copy that may be written to."""

@@ -6,16 +6,15 @@ What moves has none; the picture darkens its surroundings until it rests.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
-
-from numpy.typing import NDArray
+from collections.abc import Callable, Mapping, Sequence
+from typing import TypeAlias
 
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
-from sailenv_ros.light.relight.found_light import MOST
+from sailenv_ros.light.relight.found_light import MOST_PLACES
 from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
 from sailenv_ros.light.relight.object_light import (
     ObjectLighting,
+    Place,
     PlacedObject,
     SurfacePoints,
     near_changes,
@@ -23,7 +22,7 @@ from sailenv_ros.light.relight.object_light import (
 from sailenv_ros.light.relight.object_shadows import ObjectShadows
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.library import native_library
-from sailenv_ros.system.array_cache import cached_arrays, code_digest
+from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.digests import model_digest
 
@@ -31,6 +30,8 @@ __all__ = ["ShownShadows"]
 
 NEAR_M = 0.25
 """Furniture that is farther from an object's ball changes nothing of its shadow [m]."""
+
+_Places: TypeAlias = tuple[tuple[Place, ...], ...]
 
 
 class ShownShadows:
@@ -46,7 +47,8 @@ class ShownShadows:
         self._scene, self._points = scene, points
         self._still: ObjectShadows | None = None
         self._seen: list[object] = []
-        self._places: tuple[object, ...] | None = ()
+        self._places: _Places | None = ()
+        self._begins_again = False
         self._changed: tuple[tuple[object, ...], ObjectShadows] | None = None
         self._shown: tuple[BakedLight, BakedLight] | None = None
 
@@ -91,41 +93,52 @@ class ShownShadows:
     ) -> tuple[ObjectShadows, bool]:
         """Find shadows where things are; return them without changes, and whether they are others.
 
-        The first ones are kept with the scene, and on disk with the room's light.
+        Those that a scene begins with are kept with it, and on disk with the room's light.
         """
         scene, still = self._scene, self._still
         if still is not None and [place for place, _ in things.values()] == self._seen:
             return still, False
         self._seen = [place for place, _ in things.values()]
         self._places = _more(self._places, things)
-        known = scene.found.shadows.get(self._places) if self._places else None
+        if self._places is None:
+            assert still is not None
+            return still, still.update(things, threads)
+        known = scene.found.shadows.get(self._places)
         if isinstance(known, ObjectShadows):
             self._still = known.copy()
+            if self._places not in scene.found.asked:
+                scene.found.asked.add(self._places)
+                if known.casters and scene.baked.checksum:
+                    self._on_disk(known.arrays)
             return self._still, True
         if still is None:
             lighting = ObjectLighting(scene, (), self._points)
             still = self._still = ObjectShadows(lighting, moved_surfaces(scene, ()))
-        checksum = scene.baked.checksum
-        if still.casters or not things or not checksum:
+        if not things or not scene.baked.checksum:
             return still, still.update(things, threads)
+        found_now = False
 
-        def find() -> Mapping[str, NDArray[Any]]:
+        def find() -> Arrays:
+            nonlocal found_now
+            found_now = True
             still.update(things, threads)
             return still.arrays()
 
-        told = [
-            (
-                *(thing.id, thing.scale, thing.world_from_body.tobytes()),
-                *(model_digest(thing.model), albedo_of_model(thing.model).tolist()),
-            )
-            for _, thing in things.values()
-        ]
-        code = code_digest("light/bake", "light/relight", "native", "rays", "types")
-        key = checksum, native_library().digest, *scene.drawn, *told
-        found = cached_arrays("shadows", key, find, code=code)
-        if not still.casters:
+        # What the same beginning leads to is often the same, but not what chance does to it then.
+        first = len(self._places) == 1
+        found = self._on_disk(find, keep=first or self._begins_again)
+        if not found_now:
             still.take(things, found, threads)
+        self._begins_again = first and not found_now
         return still, True
+
+    def _on_disk(self, find: Callable[[], Arrays], *, keep: bool = True) -> Arrays:
+        """Return what is kept on disk of shadows of things that have been where they have been."""
+        scene = self._scene
+        told = [[_told(place) for place in places] for places in self._places or ()]
+        code = code_digest("light/bake", "light/relight", "native", "rays", "types")
+        key = scene.baked.checksum, native_library().digest, *scene.drawn, *told
+        return cached_arrays("shadows", key, find, code=code, keep=keep)
 
     def _with_changes(
         self, still: ObjectShadows, changes: Sequence[Change], things: Sequence[PlacedObject]
@@ -137,9 +150,15 @@ class ShownShadows:
 
 
 def _more(
-    places: tuple[object, ...] | None, things: Mapping[int, tuple[object, PlacedObject]]
-) -> tuple[object, ...] | None:
+    places: _Places | None, things: Mapping[int, tuple[object, PlacedObject]]
+) -> _Places | None:
     """Return the places of objects so far and now; None where there are too many to be kept."""
-    if places is None or len(places) == MOST:
+    if places is None or len(places) == MOST_PLACES:
         return None
-    return *places, tuple(place for place, _ in things.values())
+    return *places, tuple(thing.place for _, thing in things.values())
+
+
+def _told(place: Place) -> tuple[object, ...]:
+    """Return what shadows of an object at a place depend on, as it is told between processes."""
+    id_, model, scale, pose = place
+    return id_, scale, pose, model_digest(model), albedo_of_model(model).tolist()

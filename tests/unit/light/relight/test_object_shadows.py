@@ -5,17 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_ros.light.relight import object_shadows
+from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
-from sailenv_ros.light.relight.found_light import MOST
+from sailenv_ros.light.relight.found_light import MOST, FoundLight
 from sailenv_ros.light.relight.object_light import SurfacePoints
 from sailenv_ros.light.relight.object_lights import ObjectLights, movable_objects
+from sailenv_ros.light.relight.object_shadows import LEAST, ObjectShadows
 from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.light.relight.shadow_maps import PointChanges
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
+from sailenv_ros.light.relight.texel_changes import TexelChanges
+from sailenv_ros.native.relight_kernels import gather_change
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
@@ -134,19 +141,117 @@ def test_shadows_are_a_function_of_what_stands_where() -> None:
 def test_shadows_that_were_kept_are_those_that_are_found(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Of a bake that lies on disk the first ones do, and are no other after a move either."""
+    """Of a bake on disk the first ones are kept there, and those after a move that came twice."""
     monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
     snapshot = room((BOX, ON_THE_FLOOR), (BOX, Pose((0.4, 0.3, 0.101))), environment=WHITE_SKY)
-    scene = scene_of(snapshot)
-    scene.baked = replace(scene.baked, checksum="of its file")
-    here, away = (movable_objects(one) for one in (snapshot, moved(snapshot, 1, -0.5)))
-    found = [
-        [shadows.on(scene.baked, things, (), threads=1) for things in (here, away)]
-        for shadows in (ShownShadows(scene, SurfacePoints()) for _ in range(2))
-    ]
-    assert len(list((tmp_path / "arrays").glob("shadows-*"))) == 1
-    for one, two in zip(*found, strict=True):
+    things = [movable_objects(one) for one in (snapshot, moved(snapshot, 1, -0.5))]
+
+    def kept() -> int:
+        return len(list((tmp_path / "arrays").glob("shadows-*")))
+
+    def scene_on_disk() -> BakedScene:
+        scene = BakedSceneStore().scene_of(snapshot.contents, 1)
+        scene.baked = replace(scene.baked, checksum="of its file")
+        return scene
+
+    def shown(scene: BakedScene) -> list[BakedLight]:
+        shadows = ShownShadows(scene, SurfacePoints())
+        return [shadows.on(scene.baked, one, (), threads=1) for one in things]
+
+    scene = scene_on_disk()
+    found = shown(scene)
+    assert kept() == 1
+    again = shown(scene)
+    assert kept() == 2
+    with monkeypatch.context() as patched:
+        patched.setattr(ObjectShadows, "update", lambda *_: pytest.fail("found anew"))
+        read = shown(scene_on_disk())
+    for one, two, three in zip(found, again, read, strict=True):
         assert_same(one, two)
+        assert_same(one, three)
+
+
+def test_a_beginning_that_was_kept_has_its_next_shadows_kept(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """By the process that reads it; what chance does to others that begin is not kept."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    snapshot = room((BOX, ON_THE_FLOOR), (BOX, Pose((0.4, 0.3, 0.101))), environment=WHITE_SKY)
+    counts = []
+    for _ in range(2):
+        scene = BakedSceneStore().scene_of(snapshot.contents, 1)
+        scene.baked = replace(scene.baked, checksum="of its file")
+        shadows = ShownShadows(scene, SurfacePoints())
+        for by in (0.0, -0.5, -0.4, -0.3):
+            things = movable_objects(moved(snapshot, 1, by))
+            shadows.on(scene.baked, things, (), threads=1)
+        counts.append(len(list((tmp_path / "arrays").glob("shadows-*"))))
+    assert counts == [1, 2]
+
+
+def test_where_nothing_that_moved_reaches_nothing_is_found_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A small box is felt within seven times its radius, before and after; the rest is known."""
+    small = model_of(box_mesh((0.06, 0.06, 0.06)), base_colour=BLACK)
+    places = [Pose((x, y, 0.031)) for x, y in ((-0.5, 0.0), (-0.3, 0.3), (-0.1, 0.0), (0.3, 0.2))]
+    snapshot = room(*((small, place) for place in places), environment=WHITE_SKY)
+    scene, things = scene_of(snapshot), movable_objects(snapshot)
+    shadows = ShownShadows(scene, SurfacePoints())
+    shadows.on(scene.baked, things, (), threads=1)
+    asked: list[NDArray[np.float32]] = []
+
+    def gathered(world: Any, positions: NDArray[np.float32], *rest: Any, **more: Any) -> Any:
+        asked.append(positions[more["numbers"] >= len(scene.patches.size)])  # texels
+        return gather_change(world, positions, *rest, **more)
+
+    monkeypatch.setattr(object_shadows, "gather_change", gathered)
+    away = moved(snapshot, 1, -0.55)
+    light = shadows.on(scene.baked, movable_objects(away), (), threads=1)
+    centres = np.array([(-0.5, 0.0, 0.031), (-0.55, 0.0, 0.031)])
+    apart = np.linalg.norm(np.concatenate(asked)[:, None] - centres, axis=2).min(axis=1)
+    assert 0.0 < apart.max() < 0.03 * np.sqrt(3.0 / LEAST)
+    assert_same(light, shadowed(away))
+
+
+def test_texels_tell_how_long_what_was_found_holds() -> None:
+    """Until something reaches them, and for as many rays; in the order of the scene."""
+    values = PointChanges(
+        np.array([1, 2, 3], np.uint8), np.arange(3.0, dtype=np.float32)[:, None], np.ones(3, "f4")
+    )
+    texels = TexelChanges.fresh(np.array([3, 5, 9]), 64, values)
+    known, found = texels.known(np.array([2, 5, 9, 11]), 64)
+    assert known.tolist() == [False, True, True, False]
+    assert found.change[:, 0].tolist() == [1.0, 2.0]
+    assert not texels.known(np.array([5]), 256)[0].any()
+    later = texels.after(np.array([False, True, False]))
+    assert later.known(np.array([3, 5, 9]), 64)[0].tolist() == [True, False, True]
+    other = TexelChanges.fresh(np.array([5, 7]), 256, values.at(np.array([2, 0])))
+    both = later.replaced(np.array([True, False, True]), [other])
+    assert both.texels.tolist() == [3, 5, 7, 9]
+    assert both.rays.tolist() == [64, 256, 256, 64]
+    assert both.found.change[:, 0].tolist() == [0.0, 2.0, 0.0, 2.0]
+    assert not both.outdated.any()
+    for one, two in zip(TexelChanges.of(both.arrays())[:3], both[:3], strict=True):
+        np.testing.assert_array_equal(one, two)
+
+
+def test_beginnings_that_come_again_are_kept_longest() -> None:
+    """What chance has made of them goes first."""
+
+    class Shadows:
+        def copy(self) -> Shadows:
+            return self
+
+    found = FoundLight()
+    begin, next_ = ("begin",), ("begin", "next")
+    for places in (begin, next_):
+        found.keep(places, Shadows())
+        found.asked.add(places)
+    for number in range(2 * MOST):
+        found.keep(("begin", "next", number), Shadows())
+    assert len(found.shadows) == MOST
+    assert {begin, next_} < set(found.shadows)
 
 
 def assert_same(one: BakedLight, two: BakedLight) -> None:
