@@ -33,6 +33,9 @@ FAR_M = 2.0
 TILE = 4
 """Texels to a side of a patch."""
 
+MOST_FORGOTTEN = 0.5
+"""Share of the patches beyond which it is quicker to write all again."""
+
 SMOOTHING, NARROW = 2, 0.4
 """Texels to each side that are averaged over at most, and by how much less far than patches as
 what hides light is near: many rays leave little noise."""
@@ -143,12 +146,20 @@ class ShadowMaps:
         kept = self._kept(maps)
         if kept is not None and not self._forgotten.any():
             return kept
-        after = [one.copy() for one in (maps if kept is None else kept)]
-        again = np.ones(len(scene.places), bool) if kept is None else self._written_again()
+        if self._forgotten.mean() > MOST_FORGOTTEN:
+            kept = None
+        if kept is None:
+            again = np.ones(len(scene.places), bool)
+            after = [one.copy() for one in maps]
+        else:
+            tiles = _tiles_near(scene, self._forgotten, FINE.smoothing + 1)
+            of_map = np.repeat(np.repeat(tiles, TILE, 0), TILE, 1)[: scene.side, : scene.side]
+            again = of_map.reshape(-1)[scene.places]
+            after = [
+                np.where(of_map if new.ndim == 2 else of_map[..., None], old, new)
+                for old, new in zip(maps, kept, strict=True)
+            ]
         own = np.flatnonzero(again)
-        if kept is not None:
-            for old, new in zip(maps, after, strict=True):
-                _flat(new)[scene.places[own]] = _flat(old)[scene.places[own]]
         patches = surfaces.patches()
         state, change = _smooth(patches, at_patches, FINE.smoothing, 4, threads)
         mapped = MappedTexels(
@@ -168,14 +179,6 @@ class ShadowMaps:
         before, after = self._known
         same = all(one is other for one, other in zip(before, maps, strict=True))
         return after if same else None
-
-    def _written_again(self) -> NDArray[np.bool_]:
-        """Return (N,) bool: the texels into which anything reaches from patches forgotten."""
-        scene = self._surfaces.scene
-        tiles = _tiles_near(scene, self._forgotten, FINE.smoothing + 1)
-        rows, columns = np.divmod(scene.places, scene.side)
-        found: NDArray[np.bool_] = tiles[rows // TILE, columns // TILE]
-        return found
 
     def _put_texels(
         self,
