@@ -82,4 +82,5 @@ def _passes(material: Material, uvs: Floats) -> Floats:
 
 def joined(arrays: Sequence[NDArray[Any]], shape: tuple[int, ...]) -> Floats:
     """Return (T, *shape) float32: arrays one after another."""
-    return np.concatenate([np.zeros((0, *shape)), *arrays]).astype(np.float32)
+    none = np.zeros((0, *shape), np.float32)
+    return np.concatenate([none, *arrays]).astype(np.float32, copy=False)

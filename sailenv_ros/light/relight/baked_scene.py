@@ -196,9 +196,13 @@ class BakedScene:
             for n, layer in enumerate(self.baked.layers)
             if layer.light is not None
         }
+        # Most texels are of nothing that glows.
+        glowing = np.array([*(any(look.glow) for look in geometry.materials), False])
+        own = np.flatnonzero(glowing[geometry.material[texels.triangle]])
+        patches, size = self.patches.of_texel[own], self.patches.size
         self.glows = {
-            layer_of[name]: np.stack([self.patches.means(part) for part in glow.T], axis=1)
-            for name, glow in glows_of(geometry, texels.triangle, lit_by).items()
+            layer_of[name]: np.stack([patch_means(patches, part, size) for part in glow.T], axis=1)
+            for name, glow in glows_of(geometry, texels.triangle[own], lit_by).items()
             if name in layer_of
         }
         self.irradiance, self.direct = texels.irradiance, texels.direct

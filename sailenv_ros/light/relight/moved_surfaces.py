@@ -39,9 +39,12 @@ class MovedSurfaces:
     patch_normals: Floats
     wanted: NDArray[np.uint8]
 
-    def texels(self) -> MappedTexels:
-        """Return the texels as kernels take them."""
-        return MappedTexels(self.scene.places, self.positions, self.normals, self.scene.owners)
+    def texels(self, of: NDArray[np.bool_] | slice = slice(None)) -> MappedTexels:
+        """Return the texels, or some of them, as kernels take them."""
+        scene = self.scene
+        return MappedTexels(
+            scene.places[of], self.positions[of], self.normals[of], scene.owners[of]
+        )
 
     def patches(self) -> PatchMap:
         """Return the patches as kernels take them."""

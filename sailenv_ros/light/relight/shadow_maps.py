@@ -14,7 +14,7 @@ from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.moved_surfaces import MovedSurfaces
 from sailenv_ros.light.relight.quality import FINE
 from sailenv_ros.native.relight_kernels import smooth_change, spread_change
-from sailenv_ros.native.relight_types import MappedTexels, PatchMap
+from sailenv_ros.native.relight_types import PatchMap
 
 __all__ = ["INSIDE", "PointChanges", "ShadowMaps", "with_neighbours"]
 
@@ -148,26 +148,24 @@ class ShadowMaps:
             return kept
         if self._forgotten.mean() > MOST_FORGOTTEN:
             kept = None
+        mapped, written = surfaces.texels(), None
         if kept is None:
-            again = np.ones(len(scene.places), bool)
             after = [one.copy() for one in maps]
         else:
             tiles = _tiles_near(scene, self._forgotten, FINE.smoothing + 1)
             of_map = np.repeat(np.repeat(tiles, TILE, 0), TILE, 1)[: scene.side, : scene.side]
-            again = of_map.reshape(-1)[scene.places]
             after = [
                 np.where(of_map if new.ndim == 2 else of_map[..., None], old, new)
                 for old, new in zip(maps, kept, strict=True)
             ]
-        own = np.flatnonzero(again)
+            written = of_map.reshape(-1)[scene.places]
+            mapped = surfaces.texels(written)
         patches = surfaces.patches()
         state, change = _smooth(patches, at_patches, FINE.smoothing, 4, threads)
-        mapped = MappedTexels(
-            scene.places[own], surfaces.positions[own], surfaces.normals[own], scene.owners[own]
-        )
         spread_change(mapped, patches, state, change, after, threads=threads)
         if len(texels):
-            self._put_texels(maps, after, texels, at_texels, again[texels], threads)
+            wanted = np.ones(len(texels), bool) if written is None else written[texels]
+            self._put_texels(maps, after, texels, at_texels, wanted, threads)
         self._known = maps, after
         self._forgotten[:] = False
         return after
