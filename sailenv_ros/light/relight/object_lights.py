@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from dataclasses import replace
-
-import numpy as np
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.found_light import KnownLight
+from sailenv_ros.light.relight.movable_objects import MovableObjects
 from sailenv_ros.light.relight.object_light import (
     ObjectLighting,
     PlacedObject,
@@ -24,12 +24,9 @@ from sailenv_ros.light.relight.quality import FINE, QUICK
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.types.baked_light import ObjectLight
-from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot, steady_poses
+from sailenv_ros.types.snapshot import WorldSnapshot
 
-__all__ = ["ObjectLights", "can_be_lit", "movable_objects", "with_object_light"]
-
-NEAR_M = 0.25
-"""Things whose balls are farther apart neither shade nor light each other [m]."""
+__all__ = ["ObjectLights", "with_object_light"]
 
 FAR_M = 1.0
 """Furniture that is farther from an object's ball counts when its own light is refined [m]."""
@@ -37,29 +34,6 @@ FAR_M = 1.0
 MOST_MOVING = 12
 """Of the objects that move so many get light of their own in each snapshot, those with the lowest
 ids; others have that of the probes."""
-
-
-def can_be_lit(drawn: DrawnInstance) -> bool:
-    """Return whether something can move, and keeps its shape."""
-    moves = not drawn.is_baked and not drawn.deforms and drawn.outside is None
-    return moves and drawn.model.triangle_count > 0
-
-
-def movable_objects(snapshot: WorldSnapshot) -> list[PlacedObject]:
-    """Return what can move and keeps its shape."""
-    moving = snapshot.moving.tolist()
-    rows = zip(snapshot.contents.instances, snapshot.world_from_body, moving, strict=True)
-    return [
-        PlacedObject(
-            id=drawn.instance.id,
-            model=drawn.model,
-            scale=drawn.scale,
-            world_from_body=pose,
-            moves=moves,
-        )
-        for drawn, pose, moves in rows
-        if can_be_lit(drawn)
-    ]
 
 
 def with_object_light(snapshot: WorldSnapshot, scene: BakedScene, threads: int) -> WorldSnapshot:
@@ -82,18 +56,21 @@ class ObjectLights:
     Attributes
     ----------
     points : SurfacePoints
-    things : list of PlacedObject
-        Where objects were at the last update, to the steps that count.
     """
 
     def __init__(self) -> None:
-        self.points, self.things = SurfacePoints(), list[PlacedObject]()
+        self.points, self._movable = SurfacePoints(), MovableObjects()
         self._of: tuple[object, ...] = ()
         self._seen: tuple[object, tuple[bytes, bytes]] = (None, (b"", b""))
         self._lightings: dict[tuple[object, ...], ObjectLighting] = {}
         self._still: dict[int, KnownLight] = {}
         self._known: dict[int, KnownLight] = {}
         self._light: Mapping[int, ObjectLight] = {}
+
+    @property
+    def things(self) -> list[PlacedObject]:
+        """Where objects were at the last update, to the steps that count."""
+        return self._movable.things
 
     def update(
         self,
@@ -124,24 +101,23 @@ class ObjectLights:
         if of == self._of and instances is self._seen[0] and seen == self._seen[1]:
             return self._light
         self._seen = instances, seen
-        self.things = things = [_steady(thing) for thing in movable_objects(snapshot)]
+        self._movable.follow(snapshot)
+        things, places, near = self._movable.things, self._movable.places, self._movable.near
         if of != self._of:
             if self._of[:1] != (scene,):
                 self._lightings, self._still = {}, scene.found.objects
             self._lightings = {key: one for key, one in self._lightings.items() if not key}
             self._of, self._known = of, {}
         chosen = _chosen(things)
-        near = _near(things)
         affected = near_changes(scene, things, changes, FAR_M) if rough else frozenset()
         known: dict[int, KnownLight] = {}
         asked = []
         for place in chosen:
             thing = things[place]
-            around = [things[other] for other in near[place]]
             quality = QUICK if thing.moves else FINE
             counted = () if rough and thing.id not in affected else tuple(changes)
             moved = tuple(change.key for change in counted)
-            key = moved, quality, thing.place, *(other.place for other in around)
+            key = moved, quality, places[place], *(places[other] for other in near[place])
             before = [all_.get(thing.id) for all_ in (self._known, self._still)]
             same = next((one for one in before if one is not None and one[0] == key), None)
             if same is not None:
@@ -149,10 +125,14 @@ class ObjectLights:
                 continue
             if moved not in self._lightings:
                 self._lightings[moved] = ObjectLighting(scene, counted, self.points)
+            around = [things[other] for other in near[place]]
             asked.append((self._lightings[moved], thing, around, quality, key))
         if known != self._known or asked:
-            with ThreadPoolExecutor(max(threads, 1)) as pool:
-                found = pool.map(lambda one: one[0].light_on(*one[1:4]), asked)
+            with ExitStack() as opened:
+                # To begin a thread takes longer than the light on what moves.
+                apart = threads > 1 and len(asked) > 1
+                mapped = opened.enter_context(ThreadPoolExecutor(threads)).map if apart else map
+                found = mapped(lambda one: one[0].light_on(*one[1:4]), asked)
                 for (_, thing, *_, key), light in zip(asked, found, strict=True):
                     known[thing.id] = key, light
             self._known = known
@@ -170,20 +150,3 @@ def _chosen(things: list[PlacedObject]) -> list[int]:
         if moving <= MOST_MOVING or not thing.moves:
             chosen.append(place)
     return chosen
-
-
-def _steady(thing: PlacedObject) -> PlacedObject:
-    """Return an object at a place that small motions do not change."""
-    return replace(thing, world_from_body=steady_poses(thing.world_from_body[None])[0])
-
-
-def _near(things: list[PlacedObject]) -> list[list[int]]:
-    """Return which others stand near each."""
-    if not things:
-        return []
-    balls = [thing.ball for thing in things]
-    centres, radii = np.array([ball[0] for ball in balls]), np.array([ball[1] for ball in balls])
-    apart = np.linalg.norm(centres[:, None] - centres, axis=2)
-    close = apart < radii[:, None] + radii + NEAR_M
-    np.fill_diagonal(close, False)
-    return [np.flatnonzero(row).tolist() for row in close]

@@ -16,7 +16,8 @@ from dataclasses import dataclass, replace
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
 from sailenv_ros.light.relight.change_follower import ChangeFollower
-from sailenv_ros.light.relight.object_lights import ObjectLights, can_be_lit
+from sailenv_ros.light.relight.movable_objects import can_be_lit
+from sailenv_ros.light.relight.object_lights import ObjectLights
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change

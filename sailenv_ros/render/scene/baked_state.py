@@ -45,6 +45,7 @@ class BakedState:
         self._placed: tuple[CompositedLight, SceneContents, object] | None = None
         self._poses: NDArray[np.float64] | None = None
         self._middles = np.zeros((0, 4))
+        self._sums: dict[int, tuple[ObjectLight, NDArray[np.float32]]] = {}
         self.composited: CompositedLight | None = None
         self.instances: NDArray[np.float32] = np.zeros((ROW_IDS, 3, LIGHT_TERMS), np.float32)
 
@@ -72,10 +73,17 @@ class BakedState:
             return
         if self._placed is None or self._placed[1].instances is not contents.instances:
             self._middles = _middles(contents)
+        if self._placed is None or self._placed[0] is not composited:
+            self._sums = {}
         self._placed, self._poses = placed, poses
         self.instances = self.around(snapshot, composited.probes)
+        known, self._sums = self._sums, {}
         for id_, light in snapshot.object_light.items():
-            self.instances[id_] = _sum_of(light, composited)
+            total = known.get(id_)
+            if total is None or total[0] is not light:
+                total = light, _sum_of(light, composited)
+            self._sums[id_] = total
+            self.instances[id_] = total[1]
 
     def around(self, snapshot: WorldSnapshot, probes: NDArray[np.float32]) -> NDArray[np.float32]:
         """Look the light around each instance of the snapshot of `update` up; as `instances`."""

@@ -9,8 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.light.relight import object_lights as module
+from sailenv_ros.light.relight.movable_objects import MovableObjects, movable_objects
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
-from sailenv_ros.light.relight.object_lights import ObjectLights, movable_objects
+from sailenv_ros.light.relight.object_lights import ObjectLights
 from sailenv_ros.light.relight.quality import FINE
 from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.geometry import Pose
@@ -127,3 +128,24 @@ def test_only_what_can_move_and_keeps_its_shape_is_lit() -> None:
     seen = movable_objects(replace(snapshot, contents=replace(contents, instances=instances)))
     assert [thing.id for thing in seen] == [2]
     assert isinstance(seen[0], PlacedObject)
+
+
+def test_what_stands_still_is_the_same_object_from_snapshot_to_snapshot() -> None:
+    """Only what has moved is made again; all is as if it was seen for the first time."""
+    places = [Pose((x, 0.0, 0.101)) for x in (-0.8, -0.3, 0.2, 0.7)]
+    snapshot = room(*((BOX, place) for place in places))
+    followed, later = MovableObjects(), moved(snapshot, 2, 0.65)
+    followed.follow(snapshot)
+    before = list(followed.things)
+    assert followed.near == [[1], [0, 2], [1, 3], [2]]
+    followed.follow(moved(snapshot, 2, -0.3 + 1e-9))
+    assert followed.things == before
+    followed.follow(later)
+    fresh = MovableObjects()
+    fresh.follow(later)
+    assert [one is other for one, other in zip(before, followed.things, strict=True)] == [
+        True, False, True, True,
+    ]  # fmt: skip
+    assert followed.places == fresh.places == [thing.place for thing in fresh.things]
+    assert followed.near == fresh.near
+    assert followed.near != [[1], [0, 2], [1, 3], [2]]

@@ -15,8 +15,9 @@ from sailenv_ros.light.relight import object_shadows
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
 from sailenv_ros.light.relight.found_light import MOST, FoundLight
+from sailenv_ros.light.relight.movable_objects import movable_objects
 from sailenv_ros.light.relight.object_light import SurfacePoints
-from sailenv_ros.light.relight.object_lights import ObjectLights, movable_objects
+from sailenv_ros.light.relight.object_lights import ObjectLights
 from sailenv_ros.light.relight.object_shadows import LEAST, ObjectShadows
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.light.relight.shadow_maps import PointChanges

@@ -1,0 +1,97 @@
+"""Objects that can move, where they stand, and what stands near. From snapshots to `PlacedObject`.
+
+Few of many objects move from one snapshot to the next: what is known of the others is kept.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.light.relight.object_light import Place, PlacedObject
+from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot, steady_poses
+
+__all__ = ["MovableObjects", "can_be_lit", "movable_objects"]
+
+NEAR_M = 0.25
+"""Things whose balls are farther apart neither shade nor light each other [m]."""
+
+
+def can_be_lit(drawn: DrawnInstance) -> bool:
+    """Return whether something can move, and keeps its shape."""
+    moves = not drawn.is_baked and not drawn.deforms and drawn.outside is None
+    return moves and drawn.model.triangle_count > 0
+
+
+def movable_objects(snapshot: WorldSnapshot) -> list[PlacedObject]:
+    """Return what can move and keeps its shape."""
+    rows = zip(
+        snapshot.contents.instances, snapshot.world_from_body, snapshot.moving.tolist(), strict=True
+    )
+    return [_placed(drawn, pose, moves) for drawn, pose, moves in rows if can_be_lit(drawn)]
+
+
+class MovableObjects:
+    """Objects of one scene that can move, at places that small motions do not change.
+
+    Attributes
+    ----------
+    things : list of PlacedObject
+        The same objects as before where they stand and rest as before.
+    places : list of Place
+        Of each.
+    near : list of list of int
+        Which others stand near each.
+    """
+
+    def __init__(self) -> None:
+        self.things: list[PlacedObject] = []
+        self.places: list[Place] = []
+        self.near: list[list[int]] = []
+        self._instances: tuple[DrawnInstance, ...] | None = None
+        self._rows = np.zeros(0, np.intp)
+        self._poses, self._moving = np.zeros((0, 4, 4)), np.zeros(0, np.bool_)
+        self._centres, self._radii = np.zeros((0, 3)), np.zeros(0)
+
+    def follow(self, snapshot: WorldSnapshot) -> None:
+        """Take in where things are."""
+        instances = snapshot.contents.instances
+        anew = instances is not self._instances
+        if anew:
+            self._instances = instances
+            self._rows = np.flatnonzero([can_be_lit(drawn) for drawn in instances])
+            self._centres, self._radii = np.zeros((len(self._rows), 3)), np.zeros(len(self._rows))
+            self.things, self.places = [], []
+        poses = steady_poses(snapshot.world_from_body[self._rows])
+        moving = snapshot.moving[self._rows]
+        if not anew:
+            moved = (poses != self._poses).any(axis=(1, 2))
+            changed = np.flatnonzero(moved | (moving != self._moving)).tolist()
+        else:
+            changed = list(range(len(self._rows)))
+        self._poses, self._moving = poses, moving
+        for number in changed:
+            drawn = instances[self._rows[number]]
+            thing = _placed(drawn, poses[number].copy(), bool(moving[number]))
+            self.things[number : number + 1] = [thing]
+            self.places[number : number + 1] = [thing.place]
+            self._centres[number], self._radii[number] = thing.ball
+        if changed or anew:
+            self.near = self._neighbours()
+
+    def _neighbours(self) -> list[list[int]]:
+        """Return which others stand near each."""
+        apart = np.linalg.norm(self._centres[:, None] - self._centres, axis=2)
+        close: NDArray[np.bool_] = apart < self._radii[:, None] + self._radii + NEAR_M
+        np.fill_diagonal(close, False)
+        return [np.flatnonzero(row).tolist() for row in close]
+
+
+def _placed(drawn: DrawnInstance, pose: NDArray[np.float64], moves: bool) -> PlacedObject:
+    return PlacedObject(
+        id=drawn.instance.id,
+        model=drawn.model,
+        scale=drawn.scale,
+        world_from_body=pose,
+        moves=moves,
+    )
