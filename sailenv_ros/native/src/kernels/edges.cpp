@@ -74,6 +74,36 @@ struct Seen {
     Plane plane;
 };
 
+// What a sample of a pixel sees, with no weight yet; x is not a number where the lens sees nothing.
+LANES_INLINE Seen seen_at(const Shading& s, uint32_t tag, int32_t x, int32_t y,
+                          const Sample& sample) {
+    Seen own = {tag,
+                0,
+                static_cast<float>(x) + 0.5f * static_cast<float>(sample.column - 1),
+                static_cast<float>(y) + 0.5f * static_cast<float>(sample.row - 1),
+                0.0f,
+                nullptr,
+                {}};
+    if (s.table != nullptr) {
+        const LensTable& lens = *s.fine_table;
+        const int64_t at = (2 * y + sample.row) * lens.stride + 2 * x + sample.column;
+        own.x = lens.x[at];
+        own.y = lens.y[at];
+        own.face = lens.several ? lens.face[at] : 0;
+    }
+    if (tag != NOTHING) {
+        own.triangle = s.set->triangles.data() + tag;
+        own.plane = plane_of(s, *own.triangle);
+    }
+    return own;
+}
+
+// Tells if two samples see one smooth surface.
+LANES_INLINE bool are_alike(const Shading& s, const Seen& a, const Seen& b) {
+    return a.triangle != nullptr && b.triangle != nullptr &&
+           are_alike(s, *a.triangle, a.plane, *b.triangle, b.plane, b.x, b.y);
+}
+
 // The middle of a pixel, and how places change from pixel to pixel.
 struct Middle {
     float x, y;
@@ -116,26 +146,28 @@ float share_above(const Line& line) {
     return line.c > 0.0f ? 1.0f - beyond : beyond;
 }
 
+// Which samples see the second of two surfaces: a bit for each. The centre, the first one, sees the
+// first.
+using SecondSeen = uint32_t;
+
 // Tells if the line lies between the samples of one surface, where it is at most 0, and those of
 // the other.
-bool separates(const Line& line, const int32_t* surface) {
+LANES_INLINE bool separates(const Line& line, SecondSeen second) {
     const float margin = 0.01f * (__builtin_fabsf(line.a) + __builtin_fabsf(line.b));
-    if (!(margin > 0.0f)) return false;
-    for (int32_t k = 0; k < SAMPLES; k++) {
-        const float x = 0.5f * static_cast<float>(PATTERN[k].column - 1);
-        const float y = 0.5f * static_cast<float>(PATTERN[k].row - 1);
-        const float value = line.a * x + line.b * y + line.c;
-        if (surface[k] == 0 ? value > margin : value < -margin) return false;
-    }
-    return true;
+    if (!(margin > 0.0f) || line.c > margin) return false;
+    constexpr f8 X = {0.0f, -0.5f, 0.5f, 0.0f, -0.5f, 0.5f, -0.5f, 0.5f},
+                 Y = {-0.5f, 0.0f, 0.0f, 0.5f, -0.5f, -0.5f, 0.5f, 0.5f};
+    constexpr i8 BITS = {2, 4, 8, 16, 32, 64, 128, 256};
+    const i8 is_second = (splat(static_cast<int32_t>(second)) & BITS) != 0;
+    return !any(negated_if(line.a * X + line.b * Y + line.c, is_second) > margin);
 }
 
 // The most that a surface covers of a pixel if one of its triangle's edges ends it: edges within
 // the surface leave less. Below 0 if none lies between the samples. Of small or thin triangles
 // others may lie between them and the surface's end. `inside` is 1 for the second surface, -1 for
 // the first one.
-float share_within(const Shading& s, const Triangle& t, const int32_t* surface,
-                   const Middle& middle, float inside) {
+float share_within(const Shading& s, const Triangle& t, SecondSeen second, const Middle& middle,
+                   float inside) {
     float most = -1.0f;
     // At the opposite corner an edge's function is this, if the triangle's depth varies little.
     const float over =
@@ -147,7 +179,7 @@ float share_within(const Shading& s, const Triangle& t, const int32_t* surface,
         const Line line = line_at(t.edge + 3 * j, middle, inside);
         const float slope = line.a * line.a + line.b * line.b;
         const bool high = opposite * opposite >= LEAST_HEIGHT_PX * LEAST_HEIGHT_PX * slope;
-        if (!high || !separates(line, surface)) continue;
+        if (!high || !separates(line, second)) continue;
         const float share = share_above(line);
         most = std::max(most, inside > 0.0f ? share : 1.0f - share);
     }
@@ -156,9 +188,8 @@ float share_within(const Shading& s, const Triangle& t, const int32_t* surface,
 
 // Share of a pixel that the second of two surfaces covers where a straight edge of one of them
 // ends it, or where both meet; below 0 if neither is so.
-float exact_share(const Shading& s, const Seen* seen, const int32_t* surface,
-                  const Middle& middle) {
-    const Triangle *first = seen[0].triangle, *second = seen[1].triangle;
+float exact_share(const Shading& s, const Triangle* first, const Triangle* second,
+                  SecondSeen second_seen, const Middle& middle) {
     for (const Triangle* t : {first, second}) {
         if (t != nullptr && t->face != middle.face) return -1.0f;
     }
@@ -170,14 +201,14 @@ float exact_share(const Shading& s, const Seen* seen, const int32_t* surface,
     for (const bool of_second : {second_first, !second_first}) {
         const Triangle* t = of_second ? second : first;
         if (t == nullptr) continue;
-        const float share = share_within(s, *t, surface, middle, of_second ? 1.0f : -1.0f);
+        const float share = share_within(s, *t, second_seen, middle, of_second ? 1.0f : -1.0f);
         if (share >= 0.0f) return of_second ? share : 1.0f - share;
     }
     if (first == nullptr || second == nullptr) return -1.0f;
     const Line meeting = {b.a - a.a, b.b - a.b, b.c - a.c};
-    if (separates(meeting, surface)) return share_above(meeting);
+    if (separates(meeting, second_seen)) return share_above(meeting);
     const Line other = {-meeting.a, -meeting.b, -meeting.c};
-    return separates(other, surface) ? share_above(other) : -1.0f;
+    return separates(other, second_seen) ? share_above(other) : -1.0f;
 }
 
 // Lists what a pixel's samples see besides what its centre sees. `fine` begins at its first sample.
@@ -195,36 +226,17 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
         while (k < count && seen[k].tag != tag) k++;
         if (k == count && last_surface >= 0 && tag == last) k = last_surface;
         if (k == count) {
-            float at_x = static_cast<float>(x) + 0.5f * static_cast<float>(sample.column - 1);
-            float at_y = static_cast<float>(y) + 0.5f * static_cast<float>(sample.row - 1);
-            int32_t face = 0;
-            if (s.table != nullptr) {
-                const LensTable& lens = *s.fine_table;
-                const int64_t at = (2 * y + sample.row) * lens.stride + 2 * x + sample.column;
-                at_x = lens.x[at];
-                at_y = lens.y[at];
-                face = lens.several ? lens.face[at] : 0;
-                if (!(at_x == at_x)) {
-                    // What the lens does not see counts as what it sees beside it.
-                    if (number == 0) return;
-                    surface[number] = 0;
-                    continue;
-                }
+            const Seen own = seen_at(s, tag, x, y, sample);
+            if (!(own.x == own.x)) {
+                // What the lens does not see counts as what it sees beside it.
+                if (number == 0) return;
+                surface[number] = 0;
+                continue;
             }
-            Seen& own = seen[count];
-            own = {tag, face, at_x, at_y, 0.0f, nullptr, {}};
-            if (tag != NOTHING) {
-                own.triangle = s.set->triangles.data() + tag;
-                own.plane = plane_of(s, *own.triangle);
-                for (k = 0; k < count; k++) {
-                    const Seen& other = seen[k];
-                    if (other.triangle != nullptr &&
-                        are_alike(s, *other.triangle, other.plane, *own.triangle, own.plane, at_x,
-                                  at_y)) {
-                        break;
-                    }
-                }
+            for (k = 0; k < count; k++) {
+                if (are_alike(s, seen[k], own)) break;
             }
+            seen[count] = own;
             if (k == count) {
                 count++;
             } else {
@@ -236,12 +248,31 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
         surface[number] = k;
     }
     if (count == 2) {
-        const float share = exact_share(s, seen, surface, middle_of(s, x, y));
+        SecondSeen second = 0;
+        for (int32_t k = 0; k < SAMPLES; k++) second |= static_cast<uint32_t>(surface[k]) << k;
+        const float share =
+            exact_share(s, seen[0].triangle, seen[1].triangle, second, middle_of(s, x, y));
         if (share >= 0.0f) seen[1].weight = share;
     }
     for (int32_t k = 1; k < count; k++) {
         out.push_back({seen[k].x, seen[k].y, seen[k].weight, seen[k].tag, x, y, seen[k].face});
     }
+}
+
+// The same of a pixel whose samples see two triangles, or one and nothing.
+void list_pair(const Shading& s, uint32_t tag, uint32_t other, SecondSeen second, int32_t x,
+               int32_t y, std::vector<Fragment>& out) {
+    const Seen own = seen_at(s, tag, x, y, PATTERN[0]);
+    const Seen beside = seen_at(s, other, x, y, PATTERN[__builtin_ctz(second)]);
+    if (are_alike(s, own, beside)) return;
+    float weight = exact_share(s, own.triangle, beside.triangle, second, middle_of(s, x, y));
+    if (weight < 0.0f) {
+        weight = 0.0f;
+        for (; second != 0; second &= second - 1) {
+            weight += PATTERN[__builtin_ctz(second)].weight * WEIGHT;
+        }
+    }
+    out.push_back({beside.x, beside.y, weight, other, x, y, beside.face});
 }
 
 // Of which of eight pixels the samples do not lie in one plane. `corner` is their first sample.
@@ -274,6 +305,16 @@ bool sees_one_part(const Shading& s, const uint32_t* fine, int64_t stride) {
     return true;
 }
 
+// Tells if the lens sees a pixel's centre, and the first of its other samples that are asked for.
+LANES_INLINE bool sees_samples(const Shading& s, int32_t x, int32_t y, int32_t asked) {
+    if (s.table == nullptr) return true;
+    const Sample& sample = PATTERN[__builtin_ctz(static_cast<uint32_t>(asked))];
+    const LensTable& lens = *s.fine_table;
+    const float centre = lens.x[(2 * y + 1) * lens.stride + 2 * x + 1];
+    const float beside = lens.x[(2 * y + sample.row) * lens.stride + 2 * x + sample.column];
+    return centre == centre && beside == beside;
+}
+
 void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratch& scratch) {
     scratch.fragments.clear();
     const int64_t stride = scratch.stride;
@@ -281,12 +322,19 @@ void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratc
         const uint32_t* top = scratch.visible.data() + 2 * (y - first_row) * stride;
         for (int32_t x = 0; x < s.width; x += 8) {
             const uint32_t* corner = top + 2 * x;
-            const i8 centre = every_second(corner + stride + 1);
-            i8 differs{};
-            for (const Sample& sample : PATTERN) {
-                differs |= every_second(corner + sample.row * stride + sample.column) ^ centre;
+            i8 seen[SAMPLES], differs{};
+            for (int32_t k = 0; k < SAMPLES; k++) {
+                seen[k] = every_second(corner + PATTERN[k].row * stride + PATTERN[k].column);
+                differs |= seen[k] ^ seen[0];
             }
             if (!any(differs)) continue;
+            i8 other = seen[0], second{}, more{};
+            for (int32_t k = SAMPLES - 1; k > 0; k--) other = seen[k] != seen[0] ? seen[k] : other;
+            for (int32_t k = 1; k < SAMPLES; k++) {
+                const i8 is_other = seen[k] == other;
+                second |= is_other & (1 << k);
+                more |= ~is_other & (seen[k] ^ seen[0]);
+            }
             const int64_t at = corner - scratch.visible.data();
             const i8 bends = bent(s, scratch.inverse_depth.data() + at, stride, x, y);
             const int32_t rest = static_cast<int32_t>(s.width) - x, count = rest < 8 ? rest : 8;
@@ -294,7 +342,12 @@ void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratc
                 if (differs[k] == 0) continue;
                 const uint32_t* fine = corner + 2 * k;
                 if (bends[k] == 0 && sees_one_part(s, fine, stride)) continue;
-                list_fragments(s, scratch, fine, x + k, y, scratch.fragments);
+                if (more[k] == 0 && sees_samples(s, x + k, y, second[k])) {
+                    list_pair(s, static_cast<uint32_t>(seen[0][k]), static_cast<uint32_t>(other[k]),
+                              static_cast<uint32_t>(second[k]), x + k, y, scratch.fragments);
+                } else {
+                    list_fragments(s, scratch, fine, x + k, y, scratch.fragments);
+                }
             }
         }
     }
