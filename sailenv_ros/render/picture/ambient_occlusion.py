@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import tells_depth, unit_rays
+from sailenv_ros.frame.lens_rays import tells_depth, unit_ray_planes
 from sailenv_ros.native.picture_kernels import AmbientSettings, find_ambient_visibility
 from sailenv_ros.types.camera import CameraIntrinsics
 
@@ -114,11 +114,11 @@ def ambient_visibility(
 
 @lru_cache(maxsize=8)
 def _halved_rays(intrinsics: CameraIntrinsics) -> NDArray[np.float32]:
-    rays = unit_rays(intrinsics)[::2, ::2]
+    rays = unit_ray_planes(intrinsics)[:, ::2, ::2]
     # Of depth 1 where they all lead forwards, as a pin-hole's, else of length 1.
-    if np.nanmin(rays[..., 2], initial=1.0) > LEAST_FORWARD:
-        rays = rays / rays[..., 2:]
-    return np.ascontiguousarray(np.moveaxis(rays, -1, 0), np.float32)
+    if np.nanmin(rays[2], initial=1.0) > LEAST_FORWARD:
+        rays = rays / rays[2]
+    return np.ascontiguousarray(rays, np.float32)
 
 
 def kernel_settings(

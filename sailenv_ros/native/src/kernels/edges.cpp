@@ -259,12 +259,14 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
     }
 }
 
-// The same of a pixel whose samples see two triangles, or one and nothing.
-void list_pair(const Shading& s, uint32_t tag, uint32_t other, SecondSeen second, int32_t x,
+// The same of a pixel whose samples see two triangles, or one and nothing; false where the lens
+// does not see the first sample of either.
+bool list_pair(const Shading& s, uint32_t tag, uint32_t other, SecondSeen second, int32_t x,
                int32_t y, std::vector<Fragment>& out) {
     const Seen own = seen_at(s, tag, x, y, PATTERN[0]);
     const Seen beside = seen_at(s, other, x, y, PATTERN[__builtin_ctz(second)]);
-    if (are_alike(s, own, beside)) return;
+    if (!(own.x == own.x && beside.x == beside.x)) return false;
+    if (are_alike(s, own, beside)) return true;
     float weight = exact_share(s, own.triangle, beside.triangle, second, middle_of(s, x, y));
     if (weight < 0.0f) {
         weight = 0.0f;
@@ -273,6 +275,7 @@ void list_pair(const Shading& s, uint32_t tag, uint32_t other, SecondSeen second
         }
     }
     out.push_back({beside.x, beside.y, weight, other, x, y, beside.face});
+    return true;
 }
 
 // Of which of eight pixels the samples do not lie in one plane. `corner` is their first sample.
@@ -305,16 +308,6 @@ bool sees_one_part(const Shading& s, const uint32_t* fine, int64_t stride) {
     return true;
 }
 
-// Tells if the lens sees a pixel's centre, and the first of its other samples that are asked for.
-LANES_INLINE bool sees_samples(const Shading& s, int32_t x, int32_t y, int32_t asked) {
-    if (s.table == nullptr) return true;
-    const Sample& sample = PATTERN[__builtin_ctz(static_cast<uint32_t>(asked))];
-    const LensTable& lens = *s.fine_table;
-    const float centre = lens.x[(2 * y + 1) * lens.stride + 2 * x + 1];
-    const float beside = lens.x[(2 * y + sample.row) * lens.stride + 2 * x + sample.column];
-    return centre == centre && beside == beside;
-}
-
 void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratch& scratch) {
     scratch.fragments.clear();
     const int64_t stride = scratch.stride;
@@ -342,12 +335,12 @@ void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratc
                 if (differs[k] == 0) continue;
                 const uint32_t* fine = corner + 2 * k;
                 if (bends[k] == 0 && sees_one_part(s, fine, stride)) continue;
-                if (more[k] == 0 && sees_samples(s, x + k, y, second[k])) {
+                if (more[k] == 0 &&
                     list_pair(s, static_cast<uint32_t>(seen[0][k]), static_cast<uint32_t>(other[k]),
-                              static_cast<uint32_t>(second[k]), x + k, y, scratch.fragments);
-                } else {
-                    list_fragments(s, scratch, fine, x + k, y, scratch.fragments);
+                              static_cast<uint32_t>(second[k]), x + k, y, scratch.fragments)) {
+                    continue;
                 }
+                list_fragments(s, scratch, fine, x + k, y, scratch.fragments);
             }
         }
     }

@@ -56,7 +56,7 @@ bool clip_to_face(const CubeFace& face, const ClusterRows& r, int32_t k, float* 
     struct Corner {
         double at[3];
     };
-    constexpr int32_t MOST = 8;  // corners; rounding may not make more
+    constexpr int32_t MOST = 7;  // corners, but for rounding
     Corner polygon[MOST], clipped[MOST + 2];
     int32_t count = 3;
     for (int32_t j = 0; j < 9; j++) polygon[j / 3].at[j % 3] = r.corner[j][k];
@@ -67,7 +67,7 @@ bool clip_to_face(const CubeFace& face, const ClusterRows& r, int32_t k, float* 
             side % 2 ? face.high[axis] + CLIP_MARGIN : face.low[axis] - CLIP_MARGIN;
         const auto inside = [&](const Corner& c) { return sign * (c.at[axis] - limit * c.at[2]); };
         int32_t kept = 0;
-        for (int32_t j = 0; j < count && kept < MOST; j++) {
+        for (int32_t j = 0; j < count && kept <= MOST; j++) {
             const Corner &from = polygon[j], &to = polygon[(j + 1) % count];
             const double here = inside(from), there = inside(to);
             if (here >= 0.0) clipped[kept++] = from;
@@ -77,7 +77,14 @@ bool clip_to_face(const CubeFace& face, const ClusterRows& r, int32_t k, float* 
                 border.at[i] = from.at[i] + (to.at[i] - from.at[i]) * (here / (here - there));
             }
         }
-        count = std::min(kept, MOST);
+        if (kept > MOST) {
+            for (int j = 0; j < 2; j++) {
+                low[j] = static_cast<float>(face.low[j]);
+                high[j] = static_cast<float>(face.high[j]);
+            }
+            return true;
+        }
+        count = kept;
         std::copy(clipped, clipped + count, polygon);
     }
     for (int32_t axis = 0; axis < 2; axis++) {
@@ -94,18 +101,6 @@ bool clip_to_face(const CubeFace& face, const ClusterRows& r, int32_t k, float* 
         high[axis] = static_cast<float>(std::min(most + CLIP_MARGIN, face.high[axis]));
     }
     return count > 0;
-}
-
-// The samples that one triangle can reach, by cells of its face.
-SampleBox samples_of(const ClusterRows& r, int32_t k, const CubeFace& face) {
-    const CornerPlace &a = *r.place[0][k], &b = *r.place[1][k], &c = *r.place[2][k];
-    float low[2] = {std::min(a.x, std::min(b.x, c.x)) - PLACE_MARGIN,
-                    std::min(a.y, std::min(b.y, c.y)) - PLACE_MARGIN};
-    float high[2] = {std::max(a.x, std::max(b.x, c.x)) + PLACE_MARGIN,
-                     std::max(a.y, std::max(b.y, c.y)) + PLACE_MARGIN};
-    const bool crosses = !(a.x == a.x && b.x == b.x && c.x == c.x);
-    if (crosses && !clip_to_face(face, r, k, low, high)) return {1, 1, 0, 0};
-    return samples_within(face, low, high);
 }
 
 // Which of eight triangles show their fronts, by the determinant of `set_edges_up` to the bit.
@@ -372,7 +367,10 @@ void set_lens_bounds(ClusterRows& r, int32_t count, const Projection& p, const C
         const i8 unknown = crosses | ~(bend < UNKNOWN_BEND);
         for (uint32_t rest = lane_bits(drawn & unknown); rest != 0; rest &= rest - 1) {
             const int32_t lane = k + __builtin_ctz(rest);
-            const SampleBox box = samples_of(r, lane, face);
+            float low[2] = {low_x[lane - k], low_y[lane - k]},
+                  high[2] = {high_x[lane - k], high_y[lane - k]};
+            const bool reaches = crosses[lane - k] == 0 || clip_to_face(face, r, lane, low, high);
+            const SampleBox box = reaches ? samples_within(face, low, high) : SampleBox{1, 1, 0, 0};
             r.x0[lane] = within(box.x0, p.x0);
             r.y0[lane] = within(box.y0, p.y0);
             r.x1[lane] = -within(-box.x1, -p.x1);
