@@ -6,6 +6,8 @@ from dataclasses import replace
 
 from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.movable_objects import MovableObjects
+from sailenv_ros.light.relight.object_light import PlacedObject
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Model
@@ -45,3 +47,10 @@ def moved(snapshot: WorldSnapshot, row: int, x: float) -> WorldSnapshot:
     poses = snapshot.world_from_body.copy()
     poses[row, 0, 3] = x
     return replace(snapshot, world_from_body=poses)
+
+
+def movable_objects(snapshot: WorldSnapshot) -> list[PlacedObject]:
+    """The objects of a snapshot that can move."""
+    found = MovableObjects()
+    found.follow(snapshot)
+    return found.things

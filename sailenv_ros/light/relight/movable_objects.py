@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sailenv_ros.light.relight.object_light import Place, PlacedObject
 from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot, steady_poses
 
-__all__ = ["MovableObjects", "can_be_lit", "movable_objects"]
+__all__ = ["MovableObjects", "can_be_lit"]
 
 NEAR_M = 0.25
 """Things whose balls are farther apart neither shade nor light each other [m]."""
@@ -21,14 +21,6 @@ def can_be_lit(drawn: DrawnInstance) -> bool:
     """Return whether something can move, and keeps its shape."""
     moves = not drawn.is_baked and not drawn.deforms and drawn.outside is None
     return moves and drawn.model.triangle_count > 0
-
-
-def movable_objects(snapshot: WorldSnapshot) -> list[PlacedObject]:
-    """Return what can move and keeps its shape."""
-    rows = zip(
-        snapshot.contents.instances, snapshot.world_from_body, snapshot.moving.tolist(), strict=True
-    )
-    return [_placed(drawn, pose, moves) for drawn, pose, moves in rows if can_be_lit(drawn)]
 
 
 class MovableObjects:
@@ -60,19 +52,26 @@ class MovableObjects:
         if anew:
             self._instances = instances
             self._rows = np.flatnonzero([can_be_lit(drawn) for drawn in instances])
-            self._centres, self._radii = np.zeros((len(self._rows), 3)), np.zeros(len(self._rows))
+            count = len(self._rows)
+            # No pose is that of before.
+            self._poses, self._moving = np.full((count, 4, 4), np.nan), np.zeros(count, np.bool_)
+            self._centres, self._radii = np.zeros((count, 3)), np.zeros(count)
             self.things, self.places = [], []
         poses = steady_poses(snapshot.world_from_body[self._rows])
         moving = snapshot.moving[self._rows]
-        if not anew:
-            moved = (poses != self._poses).any(axis=(1, 2))
-            changed = np.flatnonzero(moved | (moving != self._moving)).tolist()
-        else:
-            changed = list(range(len(self._rows)))
+        moved = (poses != self._poses).any(axis=(1, 2))
+        changed = np.flatnonzero(moved | (moving != self._moving)).tolist()
         self._poses, self._moving = poses, moving
         for number in changed:
             drawn = instances[self._rows[number]]
-            thing = _placed(drawn, poses[number].copy(), bool(moving[number]))
+            thing = PlacedObject(
+                id=drawn.instance.id,
+                model=drawn.model,
+                scale=drawn.scale,
+                world_from_body=poses[number].copy(),
+                moves=bool(moving[number]),
+            )
+            # Appended where the lists are new.
             self.things[number : number + 1] = [thing]
             self.places[number : number + 1] = [thing.place]
             self._centres[number], self._radii[number] = thing.ball
@@ -85,13 +84,3 @@ class MovableObjects:
         close: NDArray[np.bool_] = apart < self._radii[:, None] + self._radii + NEAR_M
         np.fill_diagonal(close, False)
         return [np.flatnonzero(row).tolist() for row in close]
-
-
-def _placed(drawn: DrawnInstance, pose: NDArray[np.float64], moves: bool) -> PlacedObject:
-    return PlacedObject(
-        id=drawn.instance.id,
-        model=drawn.model,
-        scale=drawn.scale,
-        world_from_body=pose,
-        moves=moves,
-    )

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.light.relight import object_lights as module
-from sailenv_ros.light.relight.movable_objects import MovableObjects, movable_objects
+from sailenv_ros.light.relight.movable_objects import MovableObjects
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
 from sailenv_ros.light.relight.object_lights import ObjectLights
 from sailenv_ros.light.relight.quality import FINE
@@ -22,6 +22,7 @@ from tests.support.movable_boxes import (
     IN_THE_AIR,
     LAMP,
     WHITE_SKY,
+    movable_objects,
     moved,
     room,
     scene_of,

@@ -15,7 +15,6 @@ from sailenv_ros.light.relight import object_shadows
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
 from sailenv_ros.light.relight.found_light import MOST, FoundLight
-from sailenv_ros.light.relight.movable_objects import movable_objects
 from sailenv_ros.light.relight.object_light import SurfacePoints
 from sailenv_ros.light.relight.object_lights import ObjectLights
 from sailenv_ros.light.relight.object_shadows import LEAST, ObjectShadows
@@ -29,7 +28,16 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.bake_scenes import DARK
-from tests.support.movable_boxes import BLACK, BOX, LAMP, WHITE_SKY, moved, room, scene_of
+from tests.support.movable_boxes import (
+    BLACK,
+    BOX,
+    LAMP,
+    WHITE_SKY,
+    movable_objects,
+    moved,
+    room,
+    scene_of,
+)
 from tests.support.tiny_scenes import box_mesh, model_of
 
 BOARD = model_of(box_mesh((0.6, 0.4, 0.002)), base_colour=BLACK)
