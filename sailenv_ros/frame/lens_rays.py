@@ -88,6 +88,14 @@ def unit_ray_planes(lens: CameraIntrinsics) -> NDArray[np.float64]:
     return planes
 
 
+@lru_cache(maxsize=8)
+def _single_ray_planes(lens: CameraIntrinsics) -> NDArray[np.float32]:
+    """Return `unit_ray_planes` as float32: half the memory to read, off by 3e-8 rad."""
+    planes = unit_ray_planes(lens).astype(np.float32)
+    planes.flags.writeable = False
+    return planes
+
+
 def unit_rays(lens: CameraIntrinsics) -> NDArray[np.float64]:
     """Return (H, W, 3) float64 read-only: where each pixel's centre looks, in the optical frame.
 
@@ -178,7 +186,7 @@ def bent_lenses(begin: CameraIntrinsics, end: CameraIntrinsics) -> BentLenses | 
         return None
     straight = end.is_pinhole
     return BentLenses(
-        from_rays=None if tells_depth(begin) else unit_ray_planes(begin),
+        from_rays=None if tells_depth(begin) else _single_ray_planes(begin),
         from_parallel=begin.is_parallel,
         to_model=-1 if straight else end.law.model.number,
         to_coefficients=_NO_COEFFICIENTS if straight else end.law.padded,

@@ -69,7 +69,7 @@ class BentLenses(NamedTuple):
 
     Attributes
     ----------
-    from_rays : (3, H, W) float64 or None
+    from_rays : (3, H, W) float32 or None
         Unit rays of the one picture's pixels, along which its depth is; nan where the lens sees
         nothing. None where depth is along the axis.
     from_parallel : bool
@@ -83,7 +83,7 @@ class BentLenses(NamedTuple):
         Whether both are one lens.
     """
 
-    from_rays: NDArray[np.float64] | None
+    from_rays: NDArray[np.float32] | None
     from_parallel: bool
     to_model: int
     to_coefficients: NDArray[np.float64]
@@ -230,7 +230,7 @@ def move_points(
     if bent is not None:
         checked("to_coefficients", bent.to_coefficients, np.float64, (MOST_COEFFICIENTS,))
         if bent.from_rays is not None:
-            checked("from_rays", bent.from_rays, np.float64, (3, *depth.shape))
+            checked("from_rays", bent.from_rays, np.float32, (3, *depth.shape))
     for name, array in outputs.items():
         dtype, channels = MOTION_OUTPUTS[name]
         checked(name, array, dtype, (*depth.shape, *channels))

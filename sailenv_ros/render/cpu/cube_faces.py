@@ -161,8 +161,8 @@ def lens_samples(lens: CameraIntrinsics, fine: bool = False) -> LensSamples:
         tile_groups=tiles.shape[1],
         rows=rows,
         columns=columns,
-        step_stride=steps.shape[2],
-        step_rows=steps.shape[1],
+        step_stride=8 * steps.shape[1],
+        step_rows=steps.shape[0],
         several=not alone,
         fine=fine,
     )
@@ -195,7 +195,10 @@ def _places(rays: Doubles, face: int) -> tuple[Doubles, Doubles]:
 
 
 def _steps(rays: Doubles, faces: NDArray[np.uint8], stride: int) -> NDArray[np.float32]:
-    """Return (4, H, S): how places change from pixel to pixel, x and y; to the right, downwards."""
+    """Return (H, S / 8, 4, 8): how places change from pixel to pixel.
+
+    Of eight pixels side by side: x and y to the right, x and y downwards.
+    """
     height, width = faces.shape
     steps = np.zeros((4, height, stride), np.float32)
     for number in range(CUBE_FACES):
@@ -205,7 +208,7 @@ def _steps(rays: Doubles, faces: NDArray[np.uint8], stride: int) -> NDArray[np.f
         places = np.stack(_places(rays, number), axis=-1)
         found = np.concatenate([_mean_steps(places, 1), _mean_steps(places, 0)], axis=-1)
         steps[:, :, :width][:, here] = found[here].T
-    return steps
+    return np.ascontiguousarray(steps.reshape(4, height, -1, 8).transpose(1, 2, 0, 3))
 
 
 def _mean_steps(places: Doubles, axis: int) -> Doubles:

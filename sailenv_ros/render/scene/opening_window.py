@@ -146,25 +146,31 @@ def _around_through_lens(corners: NDArray[np.float64], lens: CameraIntrinsics) -
     """
     if not _sees_ahead_alone(lens):
         return None
-    found = []
+    along = np.linspace(0.0, 1.0, STEPS)[:, None, None]
+    outlines = []
     for seen in corners:
         points = _before_eye(seen)
         if not len(points):
             continue
         ahead = (points[:, :2] / points[:, 2:]).astype(np.float32)
         outline = _within_square(cv2.convexHull(ahead)[:, 0].astype(np.float64), FARTHEST)
-        if not len(outline):
-            continue
-        along = np.linspace(0.0, 1.0, STEPS)[:, None, None]
-        sides = (outline + along * (np.roll(outline, -1, axis=0) - outline)).reshape(-1, 2)
-        places = lens.project(np.column_stack([sides, np.ones(len(sides))]))
-        away = sides / np.maximum(np.linalg.norm(sides, axis=1, keepdims=True), 1e-9)
-        found.append(np.where(np.isnan(places), BEYOND_PX * away, places))
-    return _rectangle(found, lens, LENS_MARGIN_PX)
+        if len(outline):
+            after = np.concatenate([outline[1:], outline[:1]])
+            outlines.append((outline + along * (after - outline)).reshape(-1, 2))
+    if not outlines:
+        return _rectangle([], lens, LENS_MARGIN_PX)
+    sides = np.concatenate(outlines)
+    places = lens.project(np.column_stack([sides, np.ones(len(sides))]))
+    away = sides / np.maximum(np.sqrt((sides * sides).sum(axis=1, keepdims=True)), 1e-9)
+    found = np.where(np.isnan(places), BEYOND_PX * away, places)
+    ends = np.cumsum([len(each) for each in outlines])[:-1]
+    return _rectangle(np.split(found, ends), lens, LENS_MARGIN_PX)
 
 
 def _within_square(outline: NDArray[np.float64], half: float) -> NDArray[np.float64]:
     """Return the part of a convex outline (N, 2) in which no coordinate is beyond `half`."""
+    if np.abs(outline).max() <= half:
+        return outline
     for axis, sign in product((0, 1), (-1.0, 1.0)):
         inside = half - sign * outline[:, axis]
         kept = []

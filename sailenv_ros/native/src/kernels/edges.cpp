@@ -114,11 +114,17 @@ Middle middle_of(const Shading& s, int32_t x, int32_t y) {
     if (s.table == nullptr) {
         return {static_cast<float>(x), static_cast<float>(y), 1.0f, 0.0f, 0.0f, 1.0f, 0};
     }
-    const LensTable& lens = *s.table;
-    const int64_t at = y * lens.stride + x;
-    const PixelStep steps = step_at(lens, y, x);
-    return {lens.x[at],   lens.y[at],   steps.x_right, steps.y_right,
-            steps.x_down, steps.y_down, lens.face[at]};
+    // The centre is among the fine samples, which were looked at just now.
+    const LensTable& lens = *s.fine_table;
+    const int64_t at = (2 * y + 1) * lens.stride + 2 * x + 1;
+    const PixelStep steps = step_at(*s.table, y, x);
+    return {lens.x[at],
+            lens.y[at],
+            steps.x_right,
+            steps.y_right,
+            steps.x_down,
+            steps.y_down,
+            lens.several ? lens.face[at] : 0};
 }
 
 // A function a x + b y + c of the place in a pixel, whose middle is the origin. Through a lens that

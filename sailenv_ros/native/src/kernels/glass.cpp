@@ -166,7 +166,8 @@ void draw_lens_row(const Shading& s, const Triangle& t, const Part& part, const 
     const auto function = [](const float* f, f8 x, f8 down) {
         return f[0] * x + (f[1] * down + f[2]);
     };
-    for (int32_t x = t.x0; x <= t.x1; x += 8) {
+    // From a whole eight on: `steps_at` is quick there.
+    for (int32_t x = t.x0 / 8 * 8; x <= t.x1; x += 8) {
         const f8 at = load(lens.x + first + x), down = load(lens.y + first + x);
         const f8 n = function(t.inverse_depth, at, down);
         const i8 drawn =

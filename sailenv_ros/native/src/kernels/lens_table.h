@@ -6,6 +6,7 @@
 // The tables mirror those of native/lens_tables.py and are made by render/cpu/cube_faces.py.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -56,7 +57,7 @@ struct LensTiles {
 struct LensTable {
     const float *x, *y;      // (rows, stride): NaN where the lens sees nothing, and beyond the row
     const uint8_t* face;     // (rows, stride)
-    const float* steps;      // (4, H, step_stride), from pixel to pixel; see LensSteps
+    const float* steps;      // (H, step_stride / 8, 4, 8), from pixel to pixel; see LensSteps
     const LensTiles* tiles;  // (rows of groups, tile_groups)
     const CubeFace* faces;   // (CUBE_FACES,)
     int64_t stride, tile_groups;
@@ -77,35 +78,46 @@ LANES_INLINE i8 faces_at(const uint8_t* faces) {
 }
 LANES_INLINE i8 lies_on(const uint8_t* faces, int32_t face) { return faces_at(faces) == face; }
 
-// How places change from pixel to pixel, at eight samples of a row.
-struct LensSteps {
-    f8 x_right, y_right, x_down, y_down;
-};
-LANES_INLINE LensSteps steps_at(const LensTable& lens, int32_t row, int32_t x) {
-    const int64_t plane = lens.step_rows * lens.step_stride;
-    if (!lens.fine) {
-        const float* p = lens.steps + row * lens.step_stride + x;
-        return {load(p), load(p + plane), load(p + 2 * plane), load(p + 3 * plane)};
-    }
-    // Of the pixels that fine samples lie in, or right beside.
-    const int64_t last = lens.step_rows - 1, v = row > 0 ? (row - 1) / 2 : 0;
-    const float* from = lens.steps + (v < last ? v : last) * lens.step_stride;
-    alignas(32) float found[4][8];
-    for (int32_t k = 0; k < 8; k++) {
-        const float* p = from + (x + k > 0 ? (x + k - 1) / 2 : 0);
-        for (int j = 0; j < 4; j++) found[j][k] = p[j * plane];
-    }
-    return {load(found[0]), load(found[1]), load(found[2]), load(found[3])};
-}
-
-// The same at one pixel.
+// How places change from pixel to pixel, at one pixel and at eight samples of a row.
 struct PixelStep {
     float x_right, y_right, x_down, y_down;
 };
+struct LensSteps {
+    f8 x_right, y_right, x_down, y_down;
+};
+// The numbers of a pixel are eight from each other, and those of eight pixels side by side.
+LANES_INLINE const float* first_step(const LensTable& lens, int64_t row, int64_t x) {
+    return lens.steps + 4 * (row * lens.step_stride + x / 8 * 8) + x % 8;
+}
 LANES_INLINE PixelStep step_at(const LensTable& lens, int32_t row, int32_t x) {
-    const int64_t plane = lens.step_rows * lens.step_stride;
-    const float* p = lens.steps + row * lens.step_stride + x;
-    return {p[0], p[plane], p[2 * plane], p[3 * plane]};
+    const float* p = first_step(lens, row, x);
+    return {p[0], p[8], p[16], p[24]};
+}
+LANES_INLINE LensSteps steps_at(const LensTable& lens, int32_t row, int32_t x) {
+    if (!lens.fine && x % 8 == 0) {
+        const float* p = first_step(lens, row, x);
+        return {load(p), load(p + 8), load(p + 16), load(p + 24)};
+    }
+    // Of the pixels that fine samples lie in, or right beside.
+    const auto pixel = [&lens](int32_t sample) {
+        return !lens.fine ? sample : sample > 0 ? (sample - 1) / 2 : 0;
+    };
+    const int32_t last = static_cast<int32_t>(lens.step_rows - 1), v = std::min(pixel(row), last);
+    if (x % 8 == 0) {
+        // Five pixels, of which four are of one block.
+        const float *before = first_step(lens, v, pixel(x)), *p = first_step(lens, v, x / 2);
+        const auto steps = [&](int j) {
+            const f8 four = two_fours(p + 8 * j, p + 8 * j);
+            return SHUFFLE(four, splat(before[8 * j]), 8, 0, 0, 1, 1, 2, 2, 3);
+        };
+        return {steps(0), steps(1), steps(2), steps(3)};
+    }
+    alignas(32) float found[4][8];
+    for (int32_t k = 0; k < 8; k++) {
+        const float* p = first_step(lens, v, pixel(x + k));
+        for (int j = 0; j < 4; j++) found[j][k] = p[8 * j];
+    }
+    return {load(found[0]), load(found[1]), load(found[2]), load(found[3])};
 }
 
 // Where samples lie a pixel apart along the axes of a face: in the picture of a pin-hole.

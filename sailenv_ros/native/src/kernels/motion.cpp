@@ -24,7 +24,7 @@
     FIELD(const sailenv::Lens*, from_lens)                                                   \
     FIELD(const sailenv::Lens*, to_lens)                                                     \
     FIELD(int64_t, bent)                  /* 1: a lens is no pin-hole; the next count */     \
-    FIELD(const double*, from_rays)       /* (3, H, W): unit rays, `depth` is along */       \
+    FIELD(const float*, from_rays)        /* (3, H, W): unit rays, `depth` is along */       \
                                           /* them; else null, and it is along the axis */    \
     FIELD(int64_t, from_parallel)         /* 1: rays are; see `Sight` of lens.h */           \
     FIELD(int64_t, to_model)              /* of the other lens; below 0: a pin-hole */       \
@@ -76,6 +76,7 @@ namespace {
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
 constexpr int64_t CHUNK = 256;  // pixels whose intermediate results stay in the first-level cache
+constexpr int64_t BENT_CHUNK = 64;  // the same through lenses that bend lines: these keep more
 constexpr int64_t TILE_ROWS = 16;
 constexpr int64_t ROLLING_ROWS = 4;  // of which pixels' points are found side by side
 constexpr double ROUNDING_PX = 1e-3;
@@ -320,15 +321,17 @@ void move_chunk(const Motion& in, const double* columns, Wanted wanted, int64_t 
 }
 
 // A picture's pixels as points.
+template <class Real>
 struct Pixels {
     const sailenv::Lens& lens;
-    const double* rays;
+    const Real* rays;
     int64_t count;
     bool parallel;
 };
 
 // Where a pixel's ray begins, in the camera's plane, and where it leads.
-LANES_INLINE void ray_of(const Pixels& in, int64_t at, int64_t u, int64_t v, double* begin,
+template <class Real>
+LANES_INLINE void ray_of(const Pixels<Real>& in, int64_t at, int64_t u, int64_t v, double* begin,
                          double* ray) {
     begin[0] = begin[1] = 0.0;
     if (in.rays != nullptr) {
@@ -346,7 +349,8 @@ LANES_INLINE void ray_of(const Pixels& in, int64_t at, int64_t u, int64_t v, dou
 
 // The point that a pixel sees at a depth, or at a distance along its ray; its direction where that
 // is infinite.
-LANES_INLINE void point_of(const Pixels& in, int64_t at, int64_t u, int64_t v, double depth,
+template <class Real>
+LANES_INLINE void point_of(const Pixels<Real>& in, int64_t at, int64_t u, int64_t v, double depth,
                            double* point) {
     double begin[2], ray[3];
     ray_of(in, at, u, v, begin, ray);
@@ -359,10 +363,10 @@ LANES_INLINE void point_of(const Pixels& in, int64_t at, int64_t u, int64_t v, d
 
 // Where a chunk's points are in the other camera's frame; there is room for steps of eight.
 struct MovedPoints {
-    double from[3][CHUNK + 8], at[3][CHUNK + 8], step[3][CHUNK + 8];
-    double shift[CHUNK + 8];  // see `Affine`
-    double place[2][CHUNK + 8];
-    int64_t seen[CHUNK + 8];
+    double from[3][BENT_CHUNK + 8], at[3][BENT_CHUNK + 8], step[3][BENT_CHUNK + 8];
+    double shift[BENT_CHUNK + 8];  // see `Affine`
+    double place[2][BENT_CHUNK + 8];
+    int64_t seen[BENT_CHUNK + 8];
 };
 
 // Moves the points of neighbours that move alike; steps of eight as in `move_run`.
@@ -407,15 +411,16 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
     const uint16_t* ids = in.instance + at;
     const sailenv::Lens& to = *in.to_lens;
     const double rate = 1.0 / in.duration;
-    const Pixels pixels{*in.from_lens, in.from_rays, in.height * in.width, in.from_parallel != 0};
+    const Pixels<float> pixels{*in.from_lens, in.from_rays, in.height * in.width,
+                               in.from_parallel != 0};
     MovedPoints p;
     Places places;
     const float* depths = in.depth + at;
     if (in.from_rays != nullptr) {
         // Rays of the next chunk.
         for (int axis = 0; axis < 3; axis++) {
-            const double* rays = in.from_rays + axis * pixels.count + at + count;
-            for (int64_t k = 0; k < CHUNK; k += 8) __builtin_prefetch(rays + k, 0, 2);
+            const float* rays = in.from_rays + axis * pixels.count + at + count;
+            for (int64_t k = 0; k < BENT_CHUNK; k += 16) __builtin_prefetch(rays + k, 0, 2);
         }
     }
     int64_t found = 0;
@@ -424,8 +429,8 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
         const l8 at_infinity = z == INFINITE;
         const d8 reach = at_infinity ? zero + 1.0 : z;
         for (int axis = 0; axis < 3; axis++) {
-            const double* rays = in.from_rays + axis * pixels.count + at;
-            put(p.from[axis] + found, reach * vector_of(rays + found));
+            const float* rays = in.from_rays + axis * pixels.count + at;
+            put(p.from[axis] + found, reach * __builtin_convertvector(load(rays + found), d8));
         }
         put(p.shift + found, at_infinity ? zero : zero + 1.0);
     }
@@ -562,7 +567,8 @@ void move_rolling_chunk(const Motion& in, Wanted wanted, int64_t first_v, int64_
                         int64_t count, const Project& project) {
     const sailenv::Lens& to = *in.to_lens;
     const double rate = 1.0 / in.duration;
-    const Pixels pixels{*in.from_lens, in.from_rays, in.height * in.width, in.from_parallel != 0};
+    const Pixels<float> pixels{*in.from_lens, in.from_rays, in.height * in.width,
+                               in.from_parallel != 0};
     Places all_places[ROLLING_ROWS];
     RowSearch searches[ROLLING_ROWS] = {};
     for (int64_t j = 0; j < ROLLING_ROWS; j++) searches[j].found = static_cast<double>(first_v + j);
@@ -671,8 +677,8 @@ int32_t move_through_bent_lenses(int64_t threads, const Motion& in, Wanted wante
             threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
                 const bool rolls = in.own_from_rows != nullptr;
                 for (int64_t v = begin; v < end; v += rolls ? ROLLING_ROWS : 1) {
-                    for (int64_t u = 0; u < in.width; u += CHUNK) {
-                        const int64_t count = u + CHUNK < in.width ? CHUNK : in.width - u;
+                    for (int64_t u = 0; u < in.width; u += BENT_CHUNK) {
+                        const int64_t count = u + BENT_CHUNK < in.width ? BENT_CHUNK : in.width - u;
                         if (rolls) {
                             move_rolling_chunk(in, wanted, v, std::min(ROLLING_ROWS, end - v), u,
                                                count, project);
@@ -741,8 +747,8 @@ SAILENV_KERNEL(motion)(int64_t threads, const Motion* given) {
 namespace {
 
 // A pixel's point in other axes.
-void transform_point(const Transform& in, const Pixels& pixels, int64_t row, int64_t at, int64_t u,
-                     int64_t v) {
+void transform_point(const Transform& in, const Pixels<double>& pixels, int64_t row, int64_t at,
+                     int64_t u, int64_t v) {
     const double z = in.depth[at];
     const bool known = z - z == 0.0;
     double origin[2], ray[3];
@@ -761,7 +767,7 @@ void transform_point(const Transform& in, const Pixels& pixels, int64_t row, int
 SAILENV_KERNEL(transform_points)(int64_t threads, const Transform* given) {
     const Transform in = *given;
     if (in.height < 0 || in.width < 0 || in.rows < 1) return sailenv::STATUS_INVALID_ARGUMENT;
-    const Pixels pixels{*in.lens, in.rays, in.height * in.width, in.parallel != 0};
+    const Pixels<double> pixels{*in.lens, in.rays, in.height * in.width, in.parallel != 0};
     sailenv::parallel_for(threads, in.height, TILE_ROWS, [&](int64_t begin, int64_t end, int64_t) {
         for (int64_t v = begin; v < end; v++) {
             const int64_t first = v * in.width, last = first + in.width;

@@ -201,15 +201,13 @@ LANES_INLINE void prefetch_corners(const Shading& s, const Triangle& t) {
 
 // Asks for what the table says of the next row's pixels.
 LANES_INLINE void prefetch(const LensTable& lens, int32_t y, int32_t x, bool with_places) {
-    const int64_t plane = lens.step_rows * lens.step_stride;
-    const float *steps = lens.steps + y * lens.step_stride + x,
-                *places = lens.x + y * lens.stride + x;
+    const float *steps = first_step(lens, y, x), *places = lens.x + y * lens.stride + x;
     for (int32_t i = 0; i < CHUNK; i += 16) {
         if (with_places) {
             __builtin_prefetch(places + i);
             __builtin_prefetch(lens.y + y * lens.stride + x + i);
         }
-        for (int k = 0; k < 4; k++) __builtin_prefetch(steps + k * plane + i);
+        for (int k = 0; k < 4; k++) __builtin_prefetch(steps + 4 * i + 16 * k);
     }
 }
 
