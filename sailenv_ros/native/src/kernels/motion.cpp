@@ -87,7 +87,11 @@ constexpr int32_t MOST_ROUNDS = 64;  // of the search for a row
 typedef double d8 __attribute__((vector_size(64)));
 typedef int64_t l8 __attribute__((vector_size(64)));
 typedef double d8_any __attribute__((vector_size(64), aligned(8), may_alias));
+typedef int64_t l8_any __attribute__((vector_size(64), aligned(8), may_alias));
 
+constexpr d8 COUNTING = {0, 1, 2, 3, 4, 5, 6, 7};
+
+inline l8 vector_of(const int64_t* p) { return *reinterpret_cast<const l8_any*>(p); }
 inline d8 vector_of(const double* p) { return *reinterpret_cast<const d8_any*>(p); }
 inline void put(double* p, d8 x) { *reinterpret_cast<d8_any*>(p) = x; }
 
@@ -365,8 +369,8 @@ LANES_INLINE void point_of(const Pixels<Real>& in, int64_t at, int64_t u, int64_
 struct MovedPoints {
     double from[3][BENT_CHUNK + 8], at[3][BENT_CHUNK + 8], step[3][BENT_CHUNK + 8];
     double shift[BENT_CHUNK + 8];  // see `Affine`
-    double place[2][BENT_CHUNK + 8];
-    int64_t seen[BENT_CHUNK + 8];
+    double place[2][BENT_CHUNK + 8] = {};
+    int64_t seen[BENT_CHUNK + 8] = {};  // -1 where the other camera has it
 };
 
 // Moves the points of neighbours that move alike; steps of eight as in `move_run`.
@@ -391,7 +395,7 @@ void project_points(const Project& project, int64_t first, int64_t end, MovedPoi
     for (int64_t k = first; k < end; k++) {
         const double moved[3] = {p.at[0][k], p.at[1][k], p.at[2][k]};
         double place[2] = {0.0, 0.0};
-        p.seen[k] = project(moved, p.shift[k], place);
+        p.seen[k] = project(moved, p.shift[k], place) ? -1 : 0;
         for (int axis = 0; axis < 2; axis++) p.place[axis][k] = place[axis];
     }
 }
@@ -469,18 +473,24 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
             std::fill(p.seen + first, p.seen + end, 0);
             for (auto& axis : p.place) std::fill(axis + first, axis + end, 0.0);
         }
-        for (int64_t k = first; k < end; k++) {
-            const bool known =
-                has_motion & (p.from[2][k] == p.from[2][k]) & (p.at[2][k] == p.at[2][k]);
-            const bool rests =
-                same_lens & (p.step[0][k] == 0.0) & (p.step[1][k] == 0.0) & (p.step[2][k] == 0.0);
-            const bool moves = known & !rests & (p.seen[k] != 0);
-            const double right = sailenv::pixel_u(to, p.place[0][k]) - static_cast<double>(u + k);
-            const double down = sailenv::pixel_v(to, p.place[1][k]) - static_cast<double>(v);
-            places.known[k] = known;
-            places.valid[k] = known & (rests | moves);
-            places.u[k] = moves ? right : 0.0;
-            places.v[k] = moves ? down : 0.0;
+        for (int64_t k = first; k < end; k += 8) {
+            const l8 stays = (vector_of(p.step[0] + k) == 0.0) & (vector_of(p.step[1] + k) == 0.0) &
+                             (vector_of(p.step[2] + k) == 0.0);
+            const d8 z = vector_of(p.from[2] + k), z_to = vector_of(p.at[2] + k);
+            const l8 known = has_motion ? (z == z) & (z_to == z_to) : l8{};
+            const l8 rests = same_lens ? stays : l8{};
+            const l8 moves = known & ~rests & vector_of(p.seen + k);
+            const double column = static_cast<double>(u + k);
+            const d8 right = sailenv::pixel_u(to, vector_of(p.place[0] + k)) - (column + COUNTING);
+            const d8 down =
+                sailenv::pixel_v(to, vector_of(p.place[1] + k)) - static_cast<double>(v);
+            put(places.u + k, moves ? right : d8{});
+            put(places.v + k, moves ? down : d8{});
+            const l8 valid = known & (rests | moves);
+            for (int64_t j = 0; j < 8; j++) {
+                places.known[k + j] = static_cast<uint8_t>(known[j] & 1);
+                places.valid[k + j] = static_cast<uint8_t>(valid[j] & 1);
+            }
         }
         if (wanted.scene) {
             for (int64_t k = first; k < end; k++) {
