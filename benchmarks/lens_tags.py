@@ -4,7 +4,7 @@
 
 Needs opencv-contrib-python 4.x, SciPy and pupil-apriltags, and nothing of this project. The
 detector knows pin-holes alone: OpenCV rectifies the pictures by K and D of the lens, into a camera
-that looks at the board. Black shines a little, more here than there: it is taken away. To refine
+that looks at the tag. Black shines a little, more here than there: it is taken away. To refine
 edges the detector reads nearest pixels, no farther away than `quad_decimate` and one: it gets
 pictures of twice their size, and a larger `quad_decimate`. Along an edge that nearly is a row or a
 column of pixels it errs by up to half a pixel, always to one side: the camera is rolled about its
@@ -29,7 +29,7 @@ from pupil_apriltags import Detector
 
 MODULES, TAG_MODULES, TAGS = 32, 8, 3
 MODULE_M = SIDE_M / MODULES
-SIZE_PX, FOCAL_PX = 2264, 900.0
+SIZE_PX, FOCAL_PX = 1000, 900.0
 LEAST_SIDE_PX, MARGIN_PX = 100.0, 10.0
 """Smaller tags are left out, and those that come nearer to the picture's border."""
 TAG_CORNERS = (
@@ -46,9 +46,9 @@ Array: TypeAlias = Any
 CV: Any = cv2
 
 
-def turned_to(pose: Array) -> Array:
-    """Return the (3, 3) rotation into a camera that looks at the board's middle."""
-    ahead = pose[:3, 3] / np.linalg.norm(pose[:3, 3])
+def turned_to(place: Array) -> Array:
+    """Return the (3, 3) rotation into a camera that looks at a place."""
+    ahead = place / np.linalg.norm(place)
     right = np.cross([0.0, 1.0, 0.0] if abs(ahead[1]) < 0.9 else [1.0, 0.0, 0.0], ahead)
     right /= np.linalg.norm(right)
     return np.stack([right, np.cross(ahead, right), ahead])
@@ -109,6 +109,8 @@ def usable(corners: Array, size: tuple[int, int], maps: Array) -> bool:
         return False
     columns, rows = np.rint(corners).astype(int).T
     corners = np.stack([each[rows, columns] for each in maps], axis=1)
+    if not np.isfinite(corners).all():
+        return False
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
     beside = np.minimum(corners, np.array(size) - 1 - corners).min()
     return bool(sides.min() >= LEAST_SIDE_PX and beside >= MARGIN_PX)
@@ -128,26 +130,27 @@ def rolled(degrees: float) -> Array:
 
 
 def looks(
-    detector: Any, root: Array, lens: dict[str, Any], pose: Array
-) -> dict[int, list[tuple[Array, Array]]]:
-    """Return poses of tags that each roll shows: a rotation and a place [m] for each."""
-    found: dict[int, list[tuple[Array, Array]]] = {}
+    detector: Any, root: Array, lens: dict[str, Any], pose: Array, number: int
+) -> list[tuple[Array, Array]]:
+    """Return a tag's pose by each roll, a rotation and a place [m]; empty if it is not usable."""
+    found = []
     middle = 0.5 * (SIZE_PX - 1)
     inner = np.array([[FOCAL_PX, 0, middle], [0, FOCAL_PX, middle], [0, 0, 1.0]])
     # The detector counts from the picture's corner, half a pixel from OpenCV.
     camera = np.array([FOCAL_PX, FOCAL_PX, middle + 0.5, middle + 0.5])
+    place = pose[:3, :3] @ tag_in_board(number) + pose[:3, 3]
     for degrees in ROLLS_DEG:
-        turn = rolled(degrees) @ turned_to(pose)
+        turn = rolled(degrees) @ turned_to(place)
+        there = (place + TAG_CORNERS @ pose[:3, :3].T) @ turn.T @ inner.T
         maps = rectification(lens, turn, inner)
+        if there[:, 2].min() <= 0 or not usable(
+            there[:, :2] / there[:, 2:], root.shape[::-1], maps
+        ):
+            return []
         for tag in detected(detector, CV.remap(root, *maps, CV.INTER_LANCZOS4), camera):
-            if tag.tag_id >= TAGS * TAGS:
-                continue
-            place = pose[:3, :3] @ tag_in_board(tag.tag_id) + pose[:3, 3]
-            there = (place + TAG_CORNERS @ pose[:3, :3].T) @ turn.T @ inner.T
-            if usable(there[:, :2] / there[:, 2:], root.shape[::-1], maps):
-                seen = (turn.T @ tag.pose_R, turn.T @ tag.pose_t.ravel())
-                found.setdefault(tag.tag_id, []).append(seen)
-    return {number: poses for number, poses in found.items() if len(poses) == len(ROLLS_DEG)}
+            if tag.tag_id == number:
+                found.append((turn.T @ tag.pose_R, turn.T @ tag.pose_t.ravel()))
+    return found if len(found) == len(ROLLS_DEG) else []
 
 
 def nearest_to_median(poses: list[tuple[Array, Array]]) -> tuple[Array, Array]:
@@ -176,7 +179,10 @@ def main() -> None:
         angles, places = [], []
         for path, told in zip(sorted(folder.glob("*.png")), truth["poses"], strict=True):
             root, pose = root_light(CV.imread(str(path), CV.IMREAD_GRAYSCALE)), np.array(told)
-            for number, poses in looks(detector, root, truth["lens"], pose).items():
+            for number in range(TAGS * TAGS):
+                poses = looks(detector, root, truth["lens"], pose, number)
+                if not poses:
+                    continue
                 turn, place = nearest_to_median(poses)
                 true = pose[:3, :3] @ tag_in_board(number) + pose[:3, 3]
                 angles.append(angle_deg(pose[:3, :3], turn))
