@@ -149,7 +149,7 @@ class LightLayer:
     edges: SunEdges | None = None
 
 
-LIGHT_TERMS = 12
+LIGHT_TERMS = 28
 """Terms of `ObjectLight`."""
 
 
@@ -158,8 +158,8 @@ class ObjectLight:
     """Contribution of each layer to the light on one object that can move, where it stands.
 
     Terms give irradiance / pi on a surface by its normal and place in the world, as
-    `irradiance_of_terms` of light_law.h has them: 1, three of band 1, five of band 2, three of the
-    place.
+    `irradiance_of_terms` of light_law.h has them: 1, three of the normal, and for each side of the
+    body one, and three of the place.
 
     Attributes
     ----------
@@ -168,10 +168,13 @@ class ObjectLight:
     direct : (L, LIGHT_TERMS) float32
         What arrives straight from the layer's light, with soft shadows; 0 for directional lights,
         which light moving things in real time, and the surroundings.
+    axes : (3, 3) float32
+        Of the body, in the world frame, one a row.
     """
 
     bounced: NDArray[np.float32]
     direct: NDArray[np.float32]
+    axes: NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

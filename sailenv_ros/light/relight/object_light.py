@@ -3,7 +3,8 @@
 A probe in the air knows neither what an object stands on nor what stands beside it, nor that the
 sides of something large are lit unlike. So rays from the object's own surface gather what arrives
 there from everything around and straight from each lamp, and a fit by normal and place says it for
-all of the surface. From `BakedScene` and objects to `ObjectLight`.
+all of the surface. Each side has its own places: of a door one may face a lamp, the other the dark.
+From `BakedScene` and objects to `ObjectLight`.
 """
 
 from __future__ import annotations
@@ -45,8 +46,8 @@ Place: TypeAlias = tuple[int, Model, tuple[float, float, float], bytes]
 WHOLE, INSIDE = 2, 3
 """States of points: all of their light is wanted; they lie inside of something."""
 
-STIFFNESS = np.array([0.0] + 3 * [0.01] + 5 * [0.04] + 3 * [0.04])
-"""How strongly each term is held back where points do not tell it, as a share of their number."""
+STIFFNESS = np.array([0.0] + 3 * [1.3] + 24 * [0.26])
+"""How strongly each term is held back where points do not tell it: as by so many points."""
 
 HIDDEN_M = 0.1
 """Points that see nothing farther than a few centimetres are seldom seen, and count less: by the
@@ -139,11 +140,13 @@ class ObjectLighting:
             thing, *self._points.of(thing.model, quality.object_points)
         )
         bounced, direct, weights = self._gathered(world, positions, normals, quality)
-        fit = _fit(positions, normals, weights)
+        axes = thing.world_from_body[:3, :3].T
+        fit = _fit(positions, normals, weights, axes)
         by_layer = (fit @ bounced).reshape(LIGHT_TERMS, len(self._lights), 3).transpose(1, 0, 2)
         return ObjectLight(
             bounced=np.ascontiguousarray(by_layer, np.float32),
             direct=np.ascontiguousarray((fit @ direct).T, np.float32),
+            axes=np.ascontiguousarray(axes, np.float32),
         )
 
     def placed(self, thing: PlacedObject) -> PlacedInstance:
@@ -252,19 +255,19 @@ def _surface_points(model: Model, count: int) -> tuple[Doubles, Doubles]:
     return points, turned
 
 
-def _fit(positions: Floats, normals: Floats, weights: Doubles) -> Doubles:
+def _fit(positions: Floats, normals: Floats, weights: Doubles, axes: Doubles) -> Doubles:
     """Return (LIGHT_TERMS, P): from values at points to terms, by weighted least squares."""
     n, p = normals.astype(np.float64), positions.astype(np.float64)
     middle = (weights[:, None] * p).sum(axis=0) / weights.sum()
     reach = max(float(np.linalg.norm(p - middle, axis=1).max()), 1e-6)
-    x, y, z = n.T
-    basis = np.stack(
-        [np.ones(len(n)), x, y, z, x * y, y * z, z * x, x * x - y * y, 3.0 * z * z - 1.0], axis=1
-    )
-    basis = np.concatenate([basis, (p - middle) / reach], axis=1)
-    total = weights.sum()
-    normal = (basis * weights[:, None]).T @ basis + np.diag(STIFFNESS * total)
+    along = n @ axes.T
+    sides = np.concatenate([np.maximum(along, 0.0), np.minimum(along, 0.0)], axis=1) ** 2
+    places = np.concatenate([np.ones((len(n), 1)), (p - middle) / reach], axis=1)
+    of_sides = (sides[:, :, None] * places[:, None, :]).reshape(len(n), -1)
+    basis = np.concatenate([np.ones((len(n), 1)), n, of_sides], axis=1)
+    normal = (basis * weights[:, None]).T @ basis + np.diag(STIFFNESS * weights.mean())
     fit = np.linalg.solve(normal, (basis * weights[:, None]).T)
-    fit[9:] /= reach
-    fit[0] -= middle @ fit[9:]
+    by_side = fit[4:].reshape(6, 4, -1)
+    by_side[:, 1:] /= reach
+    by_side[:, 0] -= np.einsum("x,sxp->sp", middle, by_side[:, 1:])
     return fit

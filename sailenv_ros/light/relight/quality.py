@@ -45,7 +45,7 @@ class Quality:
     area_rays: int = 16
     light_rays: int = 16
     probe_rays: int = 128
-    object_points: int = 64
+    object_points: int = 128
     object_rays: int = 64
     texel_rays: int = 256
     smoothing: int = 2

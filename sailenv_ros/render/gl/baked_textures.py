@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.render.gl.programs import set_uniform
-from sailenv_ros.render.scene.baked_state import ROW_IDS, BakedState
+from sailenv_ros.render.scene.baked_state import INSTANCE_ROW, ROW_IDS, BakedState
 from sailenv_ros.render.scene.lightmap_compositing import CompositedLight
 from sailenv_ros.types.baked_light import SunEdges
 from sailenv_ros.types.snapshot import WorldSnapshot
@@ -79,12 +79,14 @@ class BakedTextures:
                 texture.release()
 
     def _write(self, table: NDArray[np.float32]) -> None:
-        # Four terms a texel: an instance's lie side by side, ROW_IDS instances in a row.
+        # Four numbers a texel: an instance's lie side by side, ROW_IDS instances in a row.
         rows = len(table) // ROW_IDS
         if self._instances is None or self._instances.height != rows:
             if self._instances is not None:
                 self._instances.release()
-            self._instances = self._context.texture((9 * ROW_IDS, rows), 4, dtype="f4")
+            self._instances = self._context.texture(
+                (INSTANCE_ROW // 4 * ROW_IDS, rows), 4, dtype="f4"
+            )
             self._instances.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self._instances.write(np.ascontiguousarray(table))
         self._table = table

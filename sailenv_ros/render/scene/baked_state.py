@@ -20,10 +20,14 @@ from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
-__all__ = ["ROW_IDS", "BakedState"]
+__all__ = ["INSTANCE_ROW", "ROW_IDS", "BakedState"]
 
 ROW_IDS = 256
 """The table of instances has a multiple of this number of rows."""
+
+INSTANCE_ROW = 3 * LIGHT_TERMS + 12
+"""Numbers of an instance in the table: terms of red, green and blue, see `ObjectLight`; then the
+body's axes, four numbers each, of which the last is 0."""
 
 
 class BakedState:
@@ -33,10 +37,9 @@ class BakedState:
     ----------
     composited : CompositedLight or None
         Replaced by another object when lights have changed.
-    instances : (R, 3, LIGHT_TERMS) float32
-        Red, green and blue of the light around each instance id, by terms; see `ObjectLight`.
-        Where that is not known, by the probes at the instance's middle. Replaced by another array
-        when something has moved.
+    instances : (R, INSTANCE_ROW) float32
+        The light around each instance id. Where that is not known, by the probes at the instance's
+        middle. Replaced by another array when something has moved.
     """
 
     def __init__(self) -> None:
@@ -47,7 +50,7 @@ class BakedState:
         self._middles = np.zeros((0, 4))
         self._sums: dict[int, tuple[ObjectLight, NDArray[np.float32]]] = {}
         self.composited: CompositedLight | None = None
-        self.instances: NDArray[np.float32] = np.zeros((ROW_IDS, 3, LIGHT_TERMS), np.float32)
+        self.instances: NDArray[np.float32] = np.zeros((ROW_IDS, INSTANCE_ROW), np.float32)
 
     def update(self, snapshot: WorldSnapshot) -> CompositedLight | None:
         """Bring everything up to date; None where the scene has no baked light."""
@@ -93,18 +96,22 @@ class BakedState:
         light = instance_light(probes, contents.baked.probes, points)
         ids = contents.instance_ids.astype(np.intp)
         rows = int(ids.max(initial=0)) // ROW_IDS + 1
-        table = np.zeros((rows * ROW_IDS, 3, LIGHT_TERMS), np.float32)
-        table[ids, :, :4] = light.transpose(0, 2, 1)
+        table = np.zeros((rows * ROW_IDS, INSTANCE_ROW), np.float32)
+        for colour in range(3):
+            first = colour * LIGHT_TERMS
+            table[ids, first : first + 4] = light[..., colour]
         return table
 
 
 def _sum_of(light: ObjectLight, composited: CompositedLight) -> NDArray[np.float32]:
-    """Return (3, LIGHT_TERMS): the layers of an object's light as bright as they are now."""
+    """Return (INSTANCE_ROW,): the layers of an object's light as bright as they are now."""
     total = np.zeros((LIGHT_TERMS, 3), np.float32)
     total[0] = composited.more
     for number, bounced, direct in composited.powers:
         total += light.bounced[number] * bounced + light.direct[number][:, None] * direct
-    return total.T
+    axes = np.zeros((3, 4), np.float32)
+    axes[:, :3] = light.axes
+    return np.concatenate([total.T.reshape(-1), axes.reshape(-1)])
 
 
 def _middles(contents: SceneContents) -> NDArray[np.float64]:

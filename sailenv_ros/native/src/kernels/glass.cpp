@@ -61,7 +61,7 @@ Base8 base_colour(const Part& part, const Planes& p, const Steps& steps, f8 over
 // Irradiance / pi on a surface.
 Vec3x8 light_around(const Light& light, int32_t id, Vec3x8 normal, Vec3x8 point) {
     if (!light.baked) return light_of_sky(light, normal.z);
-    return light_of_instances(light, splat(id), normal, point);
+    return light_of_instances(light, splat(id), ~splat(0), normal, point);
 }
 
 // Radiance that eight points of an instance mirror.

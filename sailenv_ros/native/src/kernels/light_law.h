@@ -76,15 +76,23 @@ LIGHT_LAW Real3 sky_irradiance(Real up, vec3 zenith, vec3 horizon, vec3 ground) 
     return mix(ground, mix(horizon, dome, max(up, 0.0f)), 0.5f + 0.5f * up);
 }
 
-// Irradiance / pi on a surface by twelve terms: spherical harmonics of bands 0, 1 and 2 of its
-// normal (Ramamoorthi and Hanrahan 2001), and how it changes from place to place.
-LIGHT_LAW Real irradiance_of_terms(Real t[12], Real3 normal, Real3 point) {
-    Real even = t[0] + t[1] * normal.x + t[2] * normal.y + t[3] * normal.z;
-    Real mixed =
-        t[4] * (normal.x * normal.y) + t[5] * (normal.y * normal.z) + t[6] * (normal.z * normal.x);
-    Real squares = t[7] * (normal.x * normal.x - normal.y * normal.y) +
-                   t[8] * (3.0f * normal.z * normal.z - 1.0f);
-    return even + mixed + squares + t[9] * point.x + t[10] * point.y + t[11] * point.z;
+// Four terms: a number, and how it changes from place to place.
+LIGHT_LAW Real at_place(Real even, Real x, Real y, Real z, Real3 point) {
+    return even + x * point.x + y * point.y + z * point.z;
+}
+
+// Irradiance / pi on a surface by 28 terms: bands 0 and 1 of spherical harmonics of its normal, and
+// four for each side of the body, which count by the squares of the normal's parts along the body's
+// axes (the ambient cube of McTaggart 2004, "Half-Life 2 / Valve Source shading"). `front` has
+// these squares where a part is above 0, `back` where it is below.
+LIGHT_LAW Real irradiance_of_terms(Real t[28], Real3 normal, Real3 front, Real3 back, Real3 point) {
+    return t[0] + t[1] * normal.x + t[2] * normal.y + t[3] * normal.z +
+           front.x * at_place(t[4], t[5], t[6], t[7], point) +
+           front.y * at_place(t[8], t[9], t[10], t[11], point) +
+           front.z * at_place(t[12], t[13], t[14], t[15], point) +
+           back.x * at_place(t[16], t[17], t[18], t[19], point) +
+           back.y * at_place(t[20], t[21], t[22], t[23], point) +
+           back.z * at_place(t[24], t[25], t[26], t[27], point);
 }
 
 #undef LIGHT_LAW

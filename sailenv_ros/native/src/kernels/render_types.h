@@ -102,7 +102,9 @@ struct ReflectionPoint {
     float light[4];  // irradiance / pi there: c0, cx, cy, cz; luminance
 };
 
-constexpr int32_t INSTANCE_TERMS = 36;  // of an instance in `instance_light`
+// A row of `instance_light`: terms of red, green and blue, see irradiance_of_terms; then the body's
+// three axes in the world, four numbers each, of which the last is 0.
+constexpr int32_t LIGHT_TERMS = 28, INSTANCE_ROW = 3 * LIGHT_TERMS + 12;
 
 // Everything that lights a picture; all vectors in the world frame.
 struct Light {
@@ -126,8 +128,7 @@ struct Light {
     int32_t reflecting;         // 1: there is a reflection map
     const LayerSum* light_map;  // (height, width): irradiance / pi, share of main light
     int32_t light_map_width, light_map_height;
-    const float*
-        instance_light;  // (ids, 3, 12): terms of red, green, blue, see irradiance_of_terms
+    const float* instance_light;  // (ids, INSTANCE_ROW)
     float main_baked, main_clear;
     const int32_t* edge_index;   // (height, width) of the light map: number of a block, or -1; null
     const uint8_t* edge_blocks;  // (blocks, 6, 6): share of main light, see SunEdges

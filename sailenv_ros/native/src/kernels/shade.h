@@ -52,7 +52,7 @@ LANES_INLINE Vec3x8 analytic_sky(const Light& l, f8 up) {
 
 // Irradiance / pi that instances know of themselves, on surfaces that are turned along `normal` and
 // lie at `point`; unit vectors and points in the world frame.
-Vec3x8 light_of_instances(const Light& light, i8 ids, Vec3x8 normal, Vec3x8 point);
+Vec3x8 light_of_instances(const Light& light, i8 ids, i8 wanted, Vec3x8 normal, Vec3x8 point);
 
 // What shiny surfaces mirror of a room, as `point` says for each; see shaders/reflections.glsl.
 // Points and directions in the world frame.

@@ -69,24 +69,31 @@ f8 edge_shares(const Light& light, const int32_t* at, const float* across, const
 
 }  // namespace
 
-Vec3x8 light_of_instances(const Light& light, i8 ids, Vec3x8 normal, Vec3x8 point) {
-    constexpr int32_t TERMS = INSTANCE_TERMS / 3;
-    const float* rows[8];
-    for (int k = 0; k < 8; k++) {
-        rows[k] = light.instance_light + INSTANCE_TERMS * static_cast<int64_t>(ids[k]);
-    }
-    const bool alike = !any(ids != ids[0]);
-    f8 found[3];
-    for (int c = 0; c < 3; c++) {
-        f8 terms[TERMS];
-        for (int j = 0; j < TERMS; j++) {
-            const int32_t at = TERMS * c + j;
-            terms[j] = splat(rows[0][at]);
-            for (int k = 1; k < 8 && !alike; k++) terms[j][k] = rows[k][at];
+Vec3x8 light_of_instances(const Light& light, i8 ids, i8 wanted, Vec3x8 normal, Vec3x8 point) {
+    Vec3x8 found = splat(vec3(0.0f, 0.0f, 0.0f));
+    // Eight pixels seldom see more than one.
+    for (i8 left = wanted; any(left);) {
+        const int32_t id = ids[__builtin_ctz(lane_bits(left))];
+        const i8 own = left & (ids == id);
+        left = left & ~own;
+        const float* row = light.instance_light + INSTANCE_ROW * static_cast<int64_t>(id);
+        const float* axes = row + 3 * LIGHT_TERMS;
+        f8 front[3], back[3], sum[3];
+        for (int k = 0; k < 3; k++) {
+            const f8 along = dot(vec3(axes[4 * k], axes[4 * k + 1], axes[4 * k + 2]), normal);
+            const f8 square = along * along;
+            front[k] = along > 0.0f ? square : splat(0.0f);
+            back[k] = along > 0.0f ? splat(0.0f) : square;
         }
-        found[c] = max8(irradiance_of_terms(terms, normal, point), splat(0.0f));
+        for (int c = 0; c < 3; c++) {
+            f8 terms[LIGHT_TERMS];
+            for (int j = 0; j < LIGHT_TERMS; j++) terms[j] = splat(row[LIGHT_TERMS * c + j]);
+            sum[c] = irradiance_of_terms(terms, normal, Vec3x8(front[0], front[1], front[2]),
+                                         Vec3x8(back[0], back[1], back[2]), point);
+        }
+        found = where(own, max(Vec3x8(sum[0], sum[1], sum[2]), 0.0f), found);
     }
-    return {found[0], found[1], found[2]};
+    return found;
 }
 
 void light_from_bake(const Shading& s, Chunk& c) {
@@ -120,9 +127,10 @@ void light_from_bake(const Shading& s, Chunk& c) {
         transpose4(texels, around.x, around.y, around.z, share);
         const i8 charted = load(c.light_u + i) > 0.0f;
         const i8 there = ~load(c.empty + i);
-        if (any(~charted & there)) {
+        const i8 free = ~charted & there;
+        if (any(free)) {
             const Vec3x8 found =
-                light_of_instances(light, load(c.id + i), c.normal.at(i), c.point.at(i));
+                light_of_instances(light, load(c.id + i), free, c.normal.at(i), c.point.at(i));
             around = where(charted, around, found);
         }
         c.around.set(i, around);

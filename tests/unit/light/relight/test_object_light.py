@@ -38,10 +38,16 @@ def light_on(snapshot: WorldSnapshot, which: int = 0) -> ObjectLight:
     return lighting.light_on(things[which], others, FINE)
 
 
-def value(terms: NDArray[np.float32], normal: tuple[float, ...], point: tuple[float, ...]) -> float:
-    """The twelve terms of light_law.h."""
-    x, y, z = normal
-    basis = [1, x, y, z, x * y, y * z, z * x, x * x - y * y, 3 * z * z - 1, *point]
+def value(
+    light: ObjectLight,
+    terms: NDArray[np.float32],
+    normal: tuple[float, ...],
+    point: tuple[float, ...],
+) -> float:
+    """The 28 terms of light_law.h."""
+    along = light.axes @ np.asarray(normal)
+    sides = [max(part, 0.0) ** 2 for part in along] + [min(part, 0.0) ** 2 for part in along]
+    basis = [1, *normal, *np.outer(sides, [1, *point]).ravel()]
     return float(np.dot(basis, terms))
 
 
@@ -50,15 +56,35 @@ def test_in_an_even_sky_every_side_has_the_sky_light() -> None:
     found = light_on(room((BOX, Pose((0.0, 0.0, 9.0))), environment=WHITE_SKY))
     for normal in ((1, 0, 0), (0, -1, 0), (0, 0, 1)):
         at = tuple(0.1 * np.array(normal) + (0.0, 0.0, 9.0))
-        assert value(found.bounced[0, :, 1], normal, at) == pytest.approx(0.8, rel=0.02)
+        assert value(found, found.bounced[0, :, 1], normal, at) == pytest.approx(0.8, rel=0.02)
 
 
 def test_a_lamp_lights_by_distance_and_angle() -> None:
     """The top faces it at 0.9 m, so intensity / (pi 0.81); the bottom gets nothing."""
     found = light_on(room((BOX, IN_THE_AIR), lights=(LAMP,)))
-    top = value(found.direct[1], (0, 0, 1), (0.0, 0.0, 1.1))
+    top = value(found, found.direct[1], (0, 0, 1), (0.0, 0.0, 1.1))
     assert top == pytest.approx(1.0 / (np.pi * 0.81), rel=0.1)
-    assert abs(value(found.direct[1], (0, 0, -1), (0.0, 0.0, 0.9))) < 0.1 * top
+    assert abs(value(found, found.direct[1], (0, 0, -1), (0.0, 0.0, 0.9))) < 0.1 * top
+
+
+def test_each_side_of_a_turned_board_has_its_own_light() -> None:
+    """A lamp before an upright board: the front falls off as it should, the back stays dark."""
+    board, turn = model_of(box_mesh((0.02, 0.8, 1.6)), base_colour=BLACK), 40.0
+    pose = Pose.from_rpy_deg((0.0, 0.0, 1.0), (0.0, 0.0, turn))
+    front = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn)), 0.0])
+    across, lamp = np.array([-front[1], front[0], 0.0]), np.array([0.0, 0.0, 1.3]) + 1.1 * front
+    found = light_on(room((board, pose), lights=(replace(LAMP, position_m=tuple(lamp)),)))
+    given, wanted = [], []
+    for beside in (-0.3, -0.1, 0.1, 0.3):
+        for z in (0.4, 0.8, 1.2, 1.6):
+            point = np.array([0.0, 0.0, z]) + 0.01 * front + beside * across
+            way = lamp - point
+            wanted.append(front @ way / (np.pi * np.linalg.norm(way) ** 3))
+            given.append(value(found, found.direct[1], tuple(front), tuple(point)))
+            back = value(found, found.direct[1], tuple(-front), tuple(point - 0.02 * front))
+            assert abs(back) < 0.02 * wanted[-1]
+    assert sum(given) == pytest.approx(sum(wanted), rel=0.03)
+    assert np.std(np.subtract(given, wanted)) < 0.15 * np.mean(wanted)
 
 
 def test_what_stands_between_takes_a_lamps_light() -> None:
@@ -72,8 +98,8 @@ def test_sides_that_face_each_other_are_darker() -> None:
     """Of two black boxes side by side, 1 cm apart, the gap is dark and the other side is not."""
     pair = room((BOX, IN_THE_AIR), (BOX, Pose((0.21, 0.0, 1.0))), environment=WHITE_SKY)
     found = light_on(pair)
-    inner = value(found.bounced[0, :, 0], (1, 0, 0), (0.1, 0.0, 1.0))
-    outer = value(found.bounced[0, :, 0], (-1, 0, 0), (-0.1, 0.0, 1.0))
+    inner = value(found, found.bounced[0, :, 0], (1, 0, 0), (0.1, 0.0, 1.0))
+    outer = value(found, found.bounced[0, :, 0], (-1, 0, 0), (-0.1, 0.0, 1.0))
     assert inner < 0.35 * outer
 
 
