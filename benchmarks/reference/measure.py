@@ -25,7 +25,10 @@ LEAST_PX = 150
 def differences_of_objects(
     ours: NDArray[np.uint8], reference: NDArray[np.uint8], ids: NDArray[Any]
 ) -> list[dict[str, Any]]:
-    """Return id, pixels and ΔE2000 of the mean colours (CIE XYZ, D65) of each object but 0."""
+    """Return what is known of the mean colours (CIE XYZ, D65) of each object but 0.
+
+    Its id, pixels, ΔE2000, and ours less the reference's lightness, chroma and hue (CIE L*C*H*).
+    """
     first, second = rgb2xyz(ours), rgb2xyz(reference)
     found = []
     for number, count in zip(*np.unique(ids[ids > 0], return_counts=True), strict=True):
@@ -33,9 +36,22 @@ def differences_of_objects(
             continue
         own = ids == number
         means = [xyz2lab(xyz[own].mean(axis=0)) for xyz in (first, second)]
+        parts = dict(zip(("lightness", "chroma", "hue"), _parts(*means), strict=True))
         difference = float(deltaE_ciede2000(*means))
-        found.append({"id": int(number), "pixels": int(count), "delta_e": difference})
+        found.append({"id": int(number), "pixels": int(count), "delta_e": difference, **parts})
     return found
+
+
+def _parts(ours: NDArray[np.float64], reference: NDArray[np.float64]) -> tuple[float, ...]:
+    """Return by how much L*, C* and H* of the first of two colours in CIE L*a*b* are larger."""
+    (_, a, b), (_, c, d) = ours, reference
+    first, second = np.hypot(a, b), np.hypot(c, d)
+    across = np.sqrt(max(2.0 * (first * second - a * c - b * d), 0.0))
+    return (
+        float(ours[0] - reference[0]),
+        float(first - second),
+        float(np.copysign(across, b * c - a * d)),
+    )
 
 
 def measured(

@@ -20,6 +20,9 @@ NEAR_DELTA_E, FAR_DELTA_E = 2.5, 5.0
 
 WORST = 8
 
+PARTS = "lightness", "chroma", "hue"
+"""In which a colour differs, as `measure.py` names them."""
+
 Row = dict[str, Any]
 
 
@@ -42,9 +45,15 @@ def lines_on_objects(rows: Sequence[Row]) -> list[str]:
     near, far = (share_near(things, most) for most in (NEAR_DELTA_E, FAR_DELTA_E))
     median = float(np.median([thing["delta_e"] for thing in things]))
     worst = sorted(things, key=lambda thing: -float(thing["delta_e"]))[:WORST]
-    listed = ", ".join(f"{thing['view']}/{thing['name']} {thing['delta_e']:.1f}" for thing in worst)
+    listed = ", ".join(
+        f"{thing['view']}/{thing['name']} {thing['delta_e']:.1f}"
+        f" ({' '.join(f'{thing[part]:+.0f}' for part in PARTS)})"
+        for thing in worst
+    )
+    parts = ", ".join(f"{part} {np.mean([thing[part] for thing in things]):+.1f}" for part in PARTS)
     return [
         f"{len(things)} objects that can move: ΔE2000 ≤ {NEAR_DELTA_E} {near:.0%}, "
         f"≤ {FAR_DELTA_E} {far:.0%}, median {median:.1f}",
-        f"farthest: {listed}",
+        f"on average ours is off by {parts}",
+        f"farthest ({', '.join(PARTS)}): {listed}",
     ]

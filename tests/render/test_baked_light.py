@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.render.cpu.renderer import NativeRenderer
-from sailenv_ros.types.baked_light import SunEdges
+from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight, SunEdges
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.views import LIT_VIEWS, RENDERED_VIEWS
@@ -93,6 +93,33 @@ def test_what_moves_is_lit_from_the_probes(render: Render) -> None:
     scene = snapshot_of([Thing(WALL, AHEAD)], lights=(), environment=DARK, baked=light)
     got = linear(render(scene, camera_at(), "rgb")["rgb"]).mean(axis=(0, 1))
     np.testing.assert_allclose(got, ALBEDO * [0.75, 0.25, 0.0], rtol=0.04, atol=0.004)
+
+
+def test_each_side_of_what_can_move_is_lit_by_its_own_place(render: Render) -> None:
+    """Sides count by the squares of the normal along the body's axes; each has its own slopes."""
+    turn = np.radians(30.0)
+    axes = np.array([[np.cos(turn), np.sin(turn), 0], [-np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+    terms = np.zeros((1, LIGHT_TERMS, 3), np.float32)
+    terms[0, 0] = 0.1
+    terms[0, 1] = -0.1, 0.0, 0.1  # along the normal, -x
+    terms[0, 16:20] = np.outer([0.4, 0.0, 0.1, 0.2], [1.0, 0.5, 0.0])  # of the side -x
+    terms[0, 8:12, 2] = 0.8, 0.0, -0.1, 0.0  # of the side +y
+    terms[0, 4:8] = terms[0, 20:28] = 9.0  # of sides that are turned away
+    own = ObjectLight(
+        bounced=terms, direct=np.zeros((1, LIGHT_TERMS), np.float32), axes=axes.astype(np.float32)
+    )
+    scene = snapshot_of(
+        [Thing(WALL, AHEAD)], lights=(), environment=DARK, baked=baked({}, [], layer(None))
+    )
+    camera = camera_at()
+    got = linear(render(replace(scene, object_light={1: own}), camera, "rgb")["rgb"])
+    k = camera.intrinsics
+    y = -(np.arange(k.width) - k.cx)[None, :] / k.fx * 3.0
+    z = -(np.arange(k.height) - k.cy)[:, None] / k.fy * 3.0
+    front = np.cos(turn) ** 2 * (0.4 + 0.1 * y + 0.2 * z)
+    left = np.sin(turn) ** 2 * (0.8 - 0.1 * y + 0.0 * z)
+    wanted = np.stack([0.2 + front, 0.1 + 0.5 * front, left], axis=-1)
+    np.testing.assert_allclose(got, np.maximum(wanted, 0.0) * ALBEDO, rtol=0.05, atol=0.004)
 
 
 def test_what_was_moved_leaves_its_light_behind(render: Render) -> None:
