@@ -47,6 +47,14 @@ class ModelTriangles:
     two_sided: NDArray[np.bool_]
     passes: Floats
 
+    @property
+    def areas_m2(self) -> NDArray[np.float64]:
+        """(T,) [m²], in the model's own frame."""
+        corners = self.corners.astype(np.float64)
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        areas: NDArray[np.float64] = 0.5 * np.linalg.norm(across, axis=1)
+        return areas
+
     def chosen_by(self, alpha: str) -> NDArray[np.bool_]:
         """Return (T,) bool: triangles whose material has this kind of alpha."""
         table = np.array([material.alpha == alpha for material in self.materials], np.bool_)

@@ -18,26 +18,28 @@ from numpy.typing import NDArray
 from sailenv_ros.types.lights import SkyMap
 from sailenv_ros.types.model import Material, Model
 
-__all__ = ["add_array", "appearance_digest", "model_digest", "sky_digest"]
+__all__ = ["add_array", "appearance_digest", "model_digest", "once", "sky_digest"]
 
 
 T = TypeVar("T")
+Found = TypeVar("Found")
 
 
-def _once(digest_of: Callable[[T], bytes]) -> Callable[[T], bytes]:
-    kept: WeakKeyDictionary[T, bytes] = WeakKeyDictionary()
+def once(find: Callable[[T], Found]) -> Callable[[T], Found]:
+    """Return a function that finds something of what never changes once, and forgets it with it."""
+    kept: WeakKeyDictionary[T, Found] = WeakKeyDictionary()
 
-    @wraps(digest_of)
-    def known(one: T) -> bytes:
+    @wraps(find)
+    def known(one: T) -> Found:
         found = kept.get(one)
         if found is None:
-            found = kept[one] = digest_of(one)
+            found = kept[one] = find(one)
         return found
 
     return known
 
 
-@_once
+@once
 def model_digest(model: Model) -> bytes:
     """Hash what baked light depends on of a model; models never change."""
     digest = hashlib.blake2b(digest_size=16)
@@ -49,7 +51,7 @@ def model_digest(model: Model) -> bytes:
     return digest.digest()
 
 
-@_once
+@once
 def appearance_digest(model: Model) -> bytes:
     """Hash all that is seen of a model: what light depends on, and how its surfaces shine."""
     digest = hashlib.blake2b(model_digest(model), digest_size=16)
@@ -64,7 +66,7 @@ def appearance_digest(model: Model) -> bytes:
     return digest.digest()
 
 
-@_once
+@once
 def sky_digest(sky: SkyMap) -> bytes:
     """Hash a sky; skies never change."""
     digest = hashlib.blake2b(digest_size=16)

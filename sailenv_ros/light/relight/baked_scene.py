@@ -20,9 +20,11 @@ from sailenv_ros.light.relight.baked_texels import BakedTexels, baked_texels, pa
 from sailenv_ros.light.relight.found_light import FoundLight
 from sailenv_ros.light.relight.ray_shapes import Shape, shape_of
 from sailenv_ros.rays.light_rays import glass_of
+from sailenv_ros.rays.model_triangles import triangles_of
 from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
 from sailenv_ros.types.baked_light import BakedLight, Unwrapping
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8
+from sailenv_ros.types.digests import once
 from sailenv_ros.types.model import Material, Model
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
@@ -232,13 +234,15 @@ class BakedScene:
         )
 
 
+@once
 def albedo_of_model(model: Model) -> Floats:
-    """Return (3,) float32: the mean share of light that a model's parts give back."""
-    if not model.parts:
-        return np.zeros(3, np.float32)
-    looks = np.array([_look(part.material)[0] for part in model.parts], np.float32)
-    mean: Floats = looks.mean(axis=0)
-    return mean
+    """Return (3,) float32 read-only: the mean share of light that a model's surface gives back."""
+    every = triangles_of(model)
+    areas = np.bincount(every.part, every.areas_m2, minlength=len(model.parts))
+    looks = np.array([_look(part.material)[0] for part in model.parts]).reshape(-1, 3)
+    albedo: Floats = (areas @ looks / max(float(areas.sum()), 1e-12)).astype(np.float32)
+    albedo.flags.writeable = False
+    return albedo
 
 
 def _as_baked(

@@ -119,6 +119,7 @@ class ObjectLighting:
         self._area = [n for n, one in enumerate(self._lights) if one and one.type == "area"]
         probes = [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in layers]
         self._probes = np.ascontiguousarray(np.concatenate(probes, axis=-1))
+        self._placed: dict[int, tuple[Place, PlacedInstance]] = {}
         self.world = ray_world(
             scene, changes, scene.sent, scene.sent, self._radiance_of_change, settled=True
         )
@@ -150,11 +151,16 @@ class ObjectLighting:
         )
 
     def placed(self, thing: PlacedObject) -> PlacedInstance:
-        """Return an object as rays meet it."""
+        """Return an object as rays meet it; the same one until it has moved."""
+        known = self._placed.get(thing.id)
+        if known is not None and known[0] == thing.place:
+            return known[1]
         pose = thing.world_from_body
         shape = self._scene.shape_of(thing.model, thing.scale, None)
         radiance = self._radiance(thing.model, thing.scale, pose)
-        return PlacedInstance(shape, pose, None, radiance, True, True)
+        made = PlacedInstance(shape, pose, None, radiance, True, True)
+        self._placed[thing.id] = thing.place, made
+        return made
 
     def _radiance_of_change(self, change: Change) -> Floats | None:
         if change.came is None or change.after is None:
@@ -238,10 +244,7 @@ def _surface_points(model: Model, count: int) -> tuple[Doubles, Doubles]:
     chosen = solid if solid.any() else np.ones(len(solid), bool)
     corners = every.corners[chosen].astype(np.float64)
     normals = every.normals[chosen].astype(np.float64)
-    areas = np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
-    ends = np.cumsum(areas)
+    ends = np.cumsum(every.areas_m2[chosen])
     at = (np.arange(count) + 0.5) / count * ends[-1]
     triangle = np.minimum(np.searchsorted(ends, at), len(ends) - 1)
     u, v = low_discrepancy_points(count).astype(np.float64).T

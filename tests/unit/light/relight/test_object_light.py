@@ -9,12 +9,14 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.light.relight import object_lights as module
+from sailenv_ros.light.relight.baked_scene import albedo_of_model
 from sailenv_ros.light.relight.movable_objects import MovableObjects
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
 from sailenv_ros.light.relight.object_lights import ObjectLights
 from sailenv_ros.light.relight.quality import FINE
 from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.movable_boxes import (
     BLACK,
@@ -57,6 +59,17 @@ def test_in_an_even_sky_every_side_has_the_sky_light() -> None:
     for normal in ((1, 0, 0), (0, -1, 0), (0, 0, 1)):
         at = tuple(0.1 * np.array(normal) + (0.0, 0.0, 9.0))
         assert value(found, found.bounced[0, :, 1], normal, at) == pytest.approx(0.8, rel=0.02)
+
+
+def test_parts_colour_what_an_object_sends_out_by_their_areas() -> None:
+    large, small = (
+        model_of(box_mesh(size), base_colour=(*colour, 1.0), roughness=1.0)
+        for size, colour in ((2.0, (1.0, 0.0, 0.0)), (1.0, (0.0, 0.0, 1.0)))
+    )
+    red, blue = (albedo_of_model(one).astype(float) for one in (large, small))
+    both = albedo_of_model(Model(name="both", parts=large.parts + small.parts))
+    np.testing.assert_allclose(both, 0.8 * red + 0.2 * blue, atol=1e-6)
+    assert red[0] > 0.5 > blue[0]
 
 
 def test_a_lamp_lights_by_distance_and_angle() -> None:
