@@ -16,11 +16,12 @@ class Allocations(ctypes.Structure):
         )
     ]
     hblks: int
+    hblkhd: int
     uordblks: int
 
 
 def allocations() -> Allocations:
-    """Return the present state: `uordblks` bytes in use, `hblks` blocks of their own."""
+    """Return the present state: `uordblks` bytes in use, `hblkhd` in `hblks` own blocks."""
     libc = ctypes.CDLL(None)
     libc.mallinfo2.restype = Allocations
     found: Allocations = libc.mallinfo2()

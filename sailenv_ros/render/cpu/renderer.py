@@ -104,6 +104,9 @@ class NativeRenderer(DrawingRenderer):
         """Free what was made of the scene that was shown; it is made again if that comes again."""
         self._table.forget()
         self._openings, self._mirrors = OpeningWindows(), FlatMirrors()
+        # What kernels draw in grows to what the largest room needed, and never shrinks.
+        self._drawing.close()
+        self._drawing = Drawing(self._threads)
         self._light = FrameLight(self._drawing, self._threads, self._reflections)
 
     def _at_baked_pose(self, snapshot: WorldSnapshot) -> NDArray[np.bool_]:
