@@ -24,7 +24,7 @@ from sailenv_ros.types.model import Asset
 
 __all__ = ["FamilySource"]
 
-_made: KeptAssets[PieceName] = KeptAssets()
+_made: KeptAssets[PieceName, Asset] = KeptAssets()
 _TEXTURES = PatternTextures()
 
 

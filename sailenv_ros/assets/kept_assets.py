@@ -1,4 +1,4 @@
-"""Assets that are made when they are asked for: kept while they are in use, and some beside."""
+"""Assets and skies, made when they are asked for: kept while in use, and some beside."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ from collections.abc import Callable, Hashable
 from typing import Generic, TypeVar
 from weakref import WeakValueDictionary
 
-from sailenv_ros.types.model import Asset
-
 __all__ = ["KeptAssets"]
 
 MAX_KEPT = 64
@@ -17,17 +15,25 @@ MAX_KEPT = 64
 was not asked for for longest is dropped first."""
 
 K = TypeVar("K", bound=Hashable)
+T = TypeVar("T")
 
 
-class KeptAssets(Generic[K]):
-    """Assets by what they are made of; may be used from several threads."""
+class KeptAssets(Generic[K, T]):
+    """Assets by what they are made of; may be used from several threads.
 
-    def __init__(self) -> None:
-        self._in_use: WeakValueDictionary[K, Asset] = WeakValueDictionary()
-        self._last: OrderedDict[K, Asset] = OrderedDict()
+    Parameters
+    ----------
+    most : int
+        How many are kept though nothing uses them.
+    """
+
+    def __init__(self, most: int = MAX_KEPT) -> None:
+        self._in_use: WeakValueDictionary[K, T] = WeakValueDictionary()
+        self._last: OrderedDict[K, T] = OrderedDict()
         self._lock = threading.Lock()
+        self._most = most
 
-    def get(self, key: K, make: Callable[[], Asset]) -> Asset:
+    def get(self, key: K, make: Callable[[], T]) -> T:
         """Return an asset; the same object while it is kept. Errors of `make` go through."""
         with self._lock:
             found = self._in_use.get(key)
@@ -35,6 +41,6 @@ class KeptAssets(Generic[K]):
                 found = self._in_use[key] = make()
             self._last[key] = found
             self._last.move_to_end(key)
-            while len(self._last) > MAX_KEPT:
+            while len(self._last) > self._most:
                 self._last.popitem(last=False)
             return found

@@ -18,7 +18,7 @@ __all__ = ["NamedAssets"]
 class NamedAssets(ABC):
     """An `OpenSource` whose assets all instances of a class share."""
 
-    _made: ClassVar[KeptAssets[str]]
+    _made: ClassVar[KeptAssets[str, Asset]]
 
     def __init_subclass__(cls) -> None:
         cls._made = KeptAssets()

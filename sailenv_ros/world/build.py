@@ -10,12 +10,12 @@ import numpy as np
 
 from sailenv_ros.assets.arranging import arranged
 from sailenv_ros.assets.asset_library import AssetLibrary
+from sailenv_ros.assets.kept_skies import kept_sky
 from sailenv_ros.assets.material_library import MaterialLibrary, material_names
 from sailenv_ros.assets.model_materials import finished
 from sailenv_ros.assets.outside import Daylight, daylight_of, outside_asset, outside_of
 from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.rooms import room_parts
-from sailenv_ros.assets.skies import load_sky
 from sailenv_ros.behaviours import start_behaviour
 from sailenv_ros.scene.spec import EnvironmentSpec, MoverSpec, ObjectSpec, RoomSpec, SceneSpec
 from sailenv_ros.types.geometry import Pose
@@ -139,7 +139,7 @@ def make_environment(spec: EnvironmentSpec, skies: Mapping[str, Path]) -> Enviro
     environment = spec.to_environment()
     if not environment.sky_map:
         return environment
-    sky = load_sky(environment.sky_map, skies, environment.sky_rotation)
+    sky = kept_sky(environment.sky_map, skies, environment.sky_rotation)
     return replace(
         environment, sky=sky, sky_zenith=sky.zenith, sky_horizon=sky.horizon, sky_ground=sky.ground
     )

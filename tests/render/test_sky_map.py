@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.assets import load_categories
+from sailenv_ros.assets.kept_skies import kept_sky
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.assets.skies import load_sky, sky_files
 from sailenv_ros.errors import AssetError, UnknownName
@@ -140,6 +143,20 @@ def test_skies_are_found_and_checked(tmp_path: Path) -> None:
             load_sky(name, files)
     with pytest.raises(UnknownName, match="did you mean 'good'"):
         load_sky("goood", files)
+
+
+def test_skies_that_nothing_uses_are_not_kept(tmp_path: Path) -> None:
+    """But for the last one: they are 3 MB each, and a stream sees them all."""
+    files = {f"sky_{number}": tmp_path / f"sky_{number}.npy" for number in range(6)}
+    for path in files.values():
+        np.save(path, np.ones((4, 8, 3), np.float16))
+    used = kept_sky("sky_0", files, 90.0)
+    left = [weakref.ref(kept_sky(name, files, 90.0 * k)) for name in files for k in (0, 1)]
+    gc.collect()
+    assert [one() is not None for one in left] == [False, True, *9 * [False], True]
+    assert kept_sky("sky_0", files, 90.0) is used
+    with pytest.raises(UnknownName, match="did you mean 'sky_5'"):
+        kept_sky("sky_55", files, 90.0)
 
 
 def test_a_sky_is_turned_counter_clockwise(tmp_path: Path) -> None:

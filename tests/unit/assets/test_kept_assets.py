@@ -17,7 +17,7 @@ def _asset(number: int) -> Asset:
 
 
 def test_what_is_in_use_is_the_same_object_and_others_go_when_there_are_many() -> None:
-    kept: KeptAssets[int] = KeptAssets()
+    kept: KeptAssets[int, Asset] = KeptAssets()
     used = kept.get(-1, lambda: _asset(-1))
     left = [weakref.ref(kept.get(k, lambda k=k: _asset(k))) for k in range(3 * MAX_KEPT)]
     gc.collect()
