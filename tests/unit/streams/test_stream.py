@@ -16,6 +16,7 @@ import pytest
 
 import sailenv_ros.streams as streams
 from sailenv_ros.errors import InvalidRequest, SceneError, UnknownName
+from sailenv_ros.render.contract import RenderedViews
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.streams import Course, Stream, StreamFrame
@@ -158,6 +159,26 @@ def test_a_room_that_was_left_is_not_drawn_beside_the_next(
     assert len(shown) == 8
     assert {kept for _, kept in shown} > {None}
     assert all(kept in (None, room) for room, kept in shown)
+
+
+def test_a_room_is_drawn_for_its_frames_alone(
+    course: Course, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not before it is furnished and painted: both would be in memory, and be made twice."""
+    drawn: list[int] = []
+    render = NativeRenderer.render
+
+    def noted(renderer: NativeRenderer, *given: Any, **more: Any) -> RenderedViews:
+        drawn.append(number)
+        return render(renderer, *given, **more)
+
+    monkeypatch.setattr(NativeRenderer, "render", noted)
+    with streams.open(course, seed=5, length=100) as one:
+        rooms = set()
+        for number in range(0, 96, 12):
+            rooms.add(one[number].room)
+    assert len(rooms) == 2
+    assert drawn == list(range(0, 96, 12))
 
 
 def test_seeds_make_different_streams(course: Course, in_order: dict[int, str]) -> None:
