@@ -68,7 +68,7 @@ def through_lens(
     return scale_light(radiance, left, np.ones(3, np.float32), veil, threads=threads)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=4)
 def _shares(
     lens: CameraIntrinsics, vignetting: float, dirt: float
 ) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
