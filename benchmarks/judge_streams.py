@@ -5,7 +5,7 @@
     python benchmarks/judge_streams.py avalanche [--experiences N]
     python benchmarks/judge_streams.py drift [--seed N] [--habit NAME]
     python benchmarks/judge_streams.py still [--frames N] [--seed N] [--habit NAME]
-    python benchmarks/judge_streams.py memory [--frames N] [--seed N] [--episodes N]
+    python benchmarks/judge_streams.py memory [--begin N] [--frames N] [--seed N] [--episodes N]
 
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
@@ -15,7 +15,8 @@ that walks, or stands, in one room, one drift at a time, which begins at a frame
 without any drift. ADWIN makes a test each 32 frames; its `delta`, the share of false alarms, is
 divided by the number of tests in 100,000 frames (Bonferroni). `memory` makes two frames of each
 episode of `home`, or of the first few in each room, and tells the memory of the process after each
-room, and the most of each tour through all rooms that begins after 10,000 frames.
+room, and the most of each tour through all rooms that begins after 10,000 frames; then the most of
+the last tour in another process, which has not played the ones before.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -30,6 +31,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -109,6 +111,7 @@ def main() -> None:
     drift = actions.add_parser("drift")
     still = actions.add_parser("still")
     memory = actions.add_parser("memory")
+    memory.add_argument("--begin", type=int, default=0)
     memory.add_argument("--frames", type=int, default=410_000)
     memory.add_argument("--episodes", type=int, default=8)
     for action in (drift, still, memory):
@@ -128,7 +131,7 @@ def main() -> None:
     elif options.action == "still":
         judge_stillness(options.frames, options.seed, options.habit)
     else:
-        measure_memory(options.frames, options.seed, options.episodes)
+        measure_memory(options.begin, options.frames, options.seed, options.episodes)
 
 
 def judge_seeking(count: int) -> None:
@@ -257,28 +260,70 @@ def judge_stillness(count: int, seed: int, habit: str) -> None:
         print(f"{end} frames without drift: {found}", flush=True)
 
 
-def measure_memory(count: int, seed: int, episodes: int) -> None:
-    """Print the memory of this process after each room, of whose frames few are made."""
+def measure_memory(begin: int, count: int, seed: int, episodes: int) -> None:
+    """Print the memory of this process after each room, of whose frames few are made.
+
+    Rooms differ, and change with the stream. So at the end another process makes the frames of the
+    last tour alone: what it needs less is what this one kept of all before.
+    """
+    tours: dict[int, list[_RoomMemory]] = {}
+    for one in _rooms_memory(begin, count, seed, episodes):
+        told = f"{one.own:.0f} MiB of its own, {one.own_most:.0f} at most"
+        print(f"frame {one.left}: {told}; {one.all:.0f} with files, {one.most:.0f} at most")
+        if one.entered >= begin + WARM_FRAMES:
+            tours.setdefault((one.entered - begin - WARM_FRAMES) // one.tour, []).append(one)
+            words = ", ".join(_told(rooms) for rooms in tours.values())
+            print(f"most of its own after a room / ever, by tour: {words} MiB", flush=True)
+    if len(tours) < 2:
+        return
+    rooms = [one for rooms in tours.values() for one in rooms]
+    played = [one for one in rooms if one.left > rooms[-1].left - one.tour]
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        fresh = pool.apply(_list_of_rooms, (played[0].entered, count, seed, episodes))
+    for how, made in (("played through", played), ("by itself", fresh)):
+        mean = sum(one.own for one in made) / len(made)
+        print(f"the last tour {how}: {_told(made)} MiB, {mean:.0f} after a room on average")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _RoomMemory:
+    """Memory of this process after a room of a stream, and the most while it was made [MiB].
+
+    Frames are those with which it is entered and left, and as many as a tour through all takes.
+    """
+
+    entered: int
+    left: int
+    tour: int
+    own: float
+    own_most: float
+    all: float
+    most: float
+
+
+def _rooms_memory(begin: int, end: int, seed: int, episodes: int) -> Iterator[_RoomMemory]:
     keep_freed_memory(many_scenes=True)
-    tours: dict[int, tuple[float, float]] = {}
     with streams.open("home", seed=seed) as stream, _MostOwn() as most_own:
         course = stream.course
         stay = course.episode * course.visit
-        for entered in range(0, count, stay):
+        for entered in range(begin // stay * stay, end, stay):
             forget_peak()
             for first in range(entered, entered + stay, course.episode)[:episodes]:
                 for number in (first, first + 2):
                     stream[number]
             own, all_mib, most = (memory_mib(one) for one in ("RssAnon", "VmRSS", "VmHWM"))
-            own_most = most_own.taken()
-            told = f"{own:.0f} MiB of its own, {own_most:.0f} at most"
-            print(f"frame {entered + stay}: {told}; {all_mib:.0f} with files, {most:.0f} at most")
-            if entered >= WARM_FRAMES:
-                tour = (entered - WARM_FRAMES) // (stay * len(stream.rooms))
-                before = tours.get(tour, (0.0, 0.0))
-                tours[tour] = max(own, before[0]), max(own_most, before[1])
-                words = ", ".join(f"{after:.0f} / {most:.0f}" for after, most in tours.values())
-                print(f"most of its own after a room / ever, by tour: {words} MiB", flush=True)
+            yield _RoomMemory(
+                entered=entered, left=entered + stay, tour=stay * len(stream.rooms),
+                own=own, own_most=most_own.taken(), all=all_mib, most=most,
+            )  # fmt: skip
+
+
+def _list_of_rooms(*given: int) -> list[_RoomMemory]:
+    return list(_rooms_memory(*given))
+
+
+def _told(rooms: Sequence[_RoomMemory]) -> str:
+    return f"{max(one.own for one in rooms):.0f} / {max(one.own_most for one in rooms):.0f}"
 
 
 class _MostOwn:
