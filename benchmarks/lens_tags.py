@@ -149,7 +149,9 @@ def looks(
             return []
         for tag in detected(detector, CV.remap(root, *maps, CV.INTER_LANCZOS4), camera):
             if tag.tag_id == number:
-                found.append((turn.T @ tag.pose_R, turn.T @ tag.pose_t.ravel()))
+                # Where it tells of more than one minimum the third axis may point the other way.
+                seen = tag.pose_R * [1.0, 1.0, np.linalg.det(tag.pose_R)]
+                found.append((turn.T @ seen, turn.T @ tag.pose_t.ravel()))
     return found if len(found) == len(ROLLS_DEG) else []
 
 
