@@ -20,6 +20,7 @@ from sailenv_ros.errors import (
     SceneError,
     UnknownName,
 )
+from sailenv_ros.simulation.frame_maker import FrameMaker
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
@@ -62,8 +63,14 @@ def test_streamed_frames_fall_on_the_rate_s_grid() -> None:
 
 
 @pytest.mark.parametrize("views", [("rgb", "depth"), ("instance",)])
-def test_the_renderer_takes_a_scene_up_while_it_changes(views: tuple[str, ...]) -> None:
-    """Not in the first frame's deadline; what agents see alone; a reset shows what is known."""
+def test_the_renderer_takes_a_scene_up_while_it_changes(
+    views: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not in the first frame's deadline; what agents see alone; a reset shows what is known.
+
+    So it is where a simulation works beside its callers.
+    """
+    monkeypatch.setattr(FrameMaker, "work_alone", lambda _: None)
     core, renderer = make_core()
     core.change_scene("solid_benchmark")
     assert not renderer.calls  # there is nobody to be drawn for
