@@ -6,6 +6,7 @@ nor drawn beyond the rectangle around them, which changes no pixel.
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from itertools import product
 
@@ -36,6 +37,8 @@ FARTHEST = 4.0
 BEYOND_PX = 1e6
 
 Rectangle = tuple[int, int, int, int]
+
+_ALONG = np.linspace(0.0, 1.0, STEPS)[:, None, None]
 
 
 class OpeningWindows:
@@ -119,17 +122,27 @@ def _rectangle(
     outlines: list[NDArray[np.float64]], lens: CameraIntrinsics, margin: int
 ) -> Rectangle:
     """Return the rectangle around those of some outlines (N, 2) that reach into the picture."""
-    most = np.array([lens.width - 1, lens.height - 1])
-    low, high = np.full(2, np.inf), np.full(2, -np.inf)
-    for places in outlines:
-        first, last = places.min(axis=0), places.max(axis=0)
-        if (last >= -margin).all() and (first <= most + margin).all():
-            low, high = np.minimum(low, first), np.maximum(high, last)
-    if not np.isfinite(low).all():
+    if not outlines:
         return 1, 1, 0, 0
-    left, top = np.clip(np.floor(low) - margin, 0, most).tolist()
-    right, bottom = np.clip(np.ceil(high) + margin, 0, most).tolist()
-    return int(left), int(top), int(right), int(bottom)
+    places = np.concatenate(outlines)
+    starts = np.cumsum([0, *(len(each) for each in outlines[:-1])])
+    low, high = np.minimum.reduceat(places, starts), np.maximum.reduceat(places, starts)
+    # Numbers of Python: there are a few openings, and an array's operation takes longer than all.
+    right, bottom = lens.width - 1, lens.height - 1
+    seen = [
+        (*first, *last)
+        for first, last in zip(low.tolist(), high.tolist(), strict=True)
+        if min(last) >= -margin and first[0] <= right + margin and first[1] <= bottom + margin
+    ]
+    if not seen:
+        return 1, 1, 0, 0
+    lefts, tops, rights, bottoms = zip(*seen, strict=True)
+    return (
+        min(max(math.floor(min(lefts)) - margin, 0), right),
+        min(max(math.floor(min(tops)) - margin, 0), bottom),
+        min(max(math.ceil(max(rights)) + margin, 0), right),
+        min(max(math.ceil(max(bottoms)) + margin, 0), bottom),
+    )
 
 
 @lru_cache(maxsize=8)
@@ -146,7 +159,6 @@ def _around_through_lens(corners: NDArray[np.float64], lens: CameraIntrinsics) -
     """
     if not _sees_ahead_alone(lens):
         return None
-    along = np.linspace(0.0, 1.0, STEPS)[:, None, None]
     outlines = []
     for seen in corners:
         points = _before_eye(seen)
@@ -156,15 +168,17 @@ def _around_through_lens(corners: NDArray[np.float64], lens: CameraIntrinsics) -
         outline = _within_square(cv2.convexHull(ahead)[:, 0].astype(np.float64), FARTHEST)
         if len(outline):
             after = np.concatenate([outline[1:], outline[:1]])
-            outlines.append((outline + along * (after - outline)).reshape(-1, 2))
+            outlines.append((outline + _ALONG * (after - outline)).reshape(-1, 2))
     if not outlines:
         return _rectangle([], lens, LENS_MARGIN_PX)
     sides = np.concatenate(outlines)
     places = lens.project(np.column_stack([sides, np.ones(len(sides))]))
-    away = sides / np.maximum(np.sqrt((sides * sides).sum(axis=1, keepdims=True)), 1e-9)
-    found = np.where(np.isnan(places), BEYOND_PX * away, places)
+    lost = np.isnan(places[:, 0])
+    if lost.any():
+        away = sides[lost]
+        places[lost] = BEYOND_PX * away / np.maximum(np.linalg.norm(away, axis=1)[:, None], 1e-9)
     ends = np.cumsum([len(each) for each in outlines])[:-1]
-    return _rectangle(np.split(found, ends), lens, LENS_MARGIN_PX)
+    return _rectangle(np.split(places, ends), lens, LENS_MARGIN_PX)
 
 
 def _within_square(outline: NDArray[np.float64], half: float) -> NDArray[np.float64]:
