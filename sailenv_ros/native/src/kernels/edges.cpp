@@ -34,6 +34,22 @@ struct Sample {
 constexpr Sample PATTERN[SAMPLES] = {{1, 1, 4}, {1, 0, 2}, {0, 1, 2}, {2, 1, 2}, {1, 2, 2},
                                      {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {2, 2, 1}};
 
+// The samples around the middle: where they are from it [pixels], and a bit for each.
+struct SamplesAround {
+    alignas(32) float x[SAMPLES - 1], y[SAMPLES - 1];
+    alignas(32) int32_t bit[SAMPLES - 1];
+};
+constexpr SamplesAround samples_around() {
+    SamplesAround found{};
+    for (int32_t k = 1; k < SAMPLES; k++) {
+        found.x[k - 1] = 0.5f * static_cast<float>(PATTERN[k].column - 1);
+        found.y[k - 1] = 0.5f * static_cast<float>(PATTERN[k].row - 1);
+        found.bit[k - 1] = 1 << k;
+    }
+    return found;
+}
+constexpr SamplesAround AROUND = samples_around();
+
 // The plane of a triangle; `normal` has any length. 1 / depth is the ray's share along the plane's
 // normal, so its slopes are the normal; those of -depth are, where it is 1 along the axis.
 struct Plane {
@@ -161,11 +177,9 @@ using SecondSeen = uint32_t;
 LANES_INLINE bool separates(const Line& line, SecondSeen second) {
     const float margin = 0.01f * (__builtin_fabsf(line.a) + __builtin_fabsf(line.b));
     if (!(margin > 0.0f) || line.c > margin) return false;
-    constexpr f8 X = {0.0f, -0.5f, 0.5f, 0.0f, -0.5f, 0.5f, -0.5f, 0.5f},
-                 Y = {-0.5f, 0.0f, 0.0f, 0.5f, -0.5f, -0.5f, 0.5f, 0.5f};
-    constexpr i8 BITS = {2, 4, 8, 16, 32, 64, 128, 256};
-    const i8 is_second = (splat(static_cast<int32_t>(second)) & BITS) != 0;
-    return !any(negated_if(line.a * X + line.b * Y + line.c, is_second) > margin);
+    const i8 is_second = (splat(static_cast<int32_t>(second)) & load(AROUND.bit)) != 0;
+    const f8 value = line.a * load(AROUND.x) + line.b * load(AROUND.y) + line.c;
+    return !any(negated_if(value, is_second) > margin);
 }
 
 // The most that a surface covers of a pixel if one of its triangle's edges ends it: edges within

@@ -94,6 +94,10 @@ constexpr d8 COUNTING = {0, 1, 2, 3, 4, 5, 6, 7};
 inline l8 vector_of(const int64_t* p) { return *reinterpret_cast<const l8_any*>(p); }
 inline d8 vector_of(const double* p) { return *reinterpret_cast<const d8_any*>(p); }
 inline void put(double* p, d8 x) { *reinterpret_cast<d8_any*>(p) = x; }
+inline void put_flags(uint8_t* p, l8 mask) {
+    const i8 narrow = __builtin_convertvector(mask, i8);
+    for (int j = 0; j < 8; j++) p[j] = static_cast<uint8_t>(narrow[j] & 1);
+}
 
 // Where a chunk's points are; there is room for steps of eight.
 struct Places {
@@ -162,15 +166,12 @@ void move_run(const Motion& in, const double* columns, Wanted wanted, int64_t ro
             store(places.flow + 2 * k, SHUFFLE(fu, fv, 0, 8, 1, 9, 2, 10, 3, 11));
             store(places.flow + 2 * k + 8, SHUFFLE(fu, fv, 4, 12, 5, 13, 6, 14, 7, 15));
         }
-        for (int64_t j = 0; j < 8; j++) places.valid[k + j] = static_cast<uint8_t>(exists[j] & 1);
+        put_flags(places.valid + k, valid);
         if (wanted.place) {
             put(places.u + k, right - to.fx * u);
             put(places.v + k, down - to.fy * v);
             put(places.z_to + k, at_infinity ? zero + INFINITE : z_to);
-            const i8 knows = __builtin_convertvector(known, i8);
-            for (int64_t j = 0; j < 8; j++) {
-                places.known[k + j] = static_cast<uint8_t>(knows[j] & 1);
-            }
+            put_flags(places.known + k, known);
         }
         if (wanted.scene) {
             const i8 there = __builtin_convertvector(known & ~at_infinity, i8);
@@ -486,11 +487,8 @@ void move_bent_chunk(const Motion& in, Wanted wanted, int64_t v, int64_t u, int6
                 sailenv::pixel_v(to, vector_of(p.place[1] + k)) - static_cast<double>(v);
             put(places.u + k, moves ? right : d8{});
             put(places.v + k, moves ? down : d8{});
-            const l8 valid = known & (rests | moves);
-            for (int64_t j = 0; j < 8; j++) {
-                places.known[k + j] = static_cast<uint8_t>(known[j] & 1);
-                places.valid[k + j] = static_cast<uint8_t>(valid[j] & 1);
-            }
+            put_flags(places.known + k, known);
+            put_flags(places.valid + k, known & (rests | moves));
         }
         if (wanted.scene) {
             for (int64_t k = first; k < end; k++) {
