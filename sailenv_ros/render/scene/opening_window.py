@@ -38,6 +38,8 @@ BEYOND_PX = 1e6
 
 Rectangle = tuple[int, int, int, int]
 
+NOTHING: Rectangle = 1, 1, 0, 0
+
 _ALONG = np.linspace(0.0, 1.0, STEPS)[:, None, None]
 
 
@@ -115,17 +117,19 @@ def _around(corners: NDArray[np.float64], camera: Camera) -> Rectangle | None:
         points = _before_eye(seen)
         if len(points):
             found.append(points[:, :2] / points[:, 2:] * focal + centre)
-    return _rectangle(found, lens, MARGIN_PX)
+    if not found:
+        return NOTHING
+    return _rectangle(np.concatenate(found), [len(each) for each in found], lens, MARGIN_PX)
 
 
 def _rectangle(
-    outlines: list[NDArray[np.float64]], lens: CameraIntrinsics, margin: int
+    places: NDArray[np.float64], counts: list[int], lens: CameraIntrinsics, margin: int
 ) -> Rectangle:
-    """Return the rectangle around those of some outlines (N, 2) that reach into the picture."""
-    if not outlines:
-        return 1, 1, 0, 0
-    places = np.concatenate(outlines)
-    starts = np.cumsum([0, *(len(each) for each in outlines[:-1])])
+    """Return the rectangle around those of some outlines that reach into the picture.
+
+    Their places (N, 2) lie one outline after another, so many of each.
+    """
+    starts = np.cumsum([0, *counts[:-1]])
     low, high = np.minimum.reduceat(places, starts), np.maximum.reduceat(places, starts)
     # Numbers of Python: there are a few openings, and an array's operation takes longer than all.
     right, bottom = lens.width - 1, lens.height - 1
@@ -135,7 +139,7 @@ def _rectangle(
         if min(last) >= -margin and first[0] <= right + margin and first[1] <= bottom + margin
     ]
     if not seen:
-        return 1, 1, 0, 0
+        return NOTHING
     lefts, tops, rights, bottoms = zip(*seen, strict=True)
     return (
         min(max(math.floor(min(lefts)) - margin, 0), right),
@@ -170,15 +174,14 @@ def _around_through_lens(corners: NDArray[np.float64], lens: CameraIntrinsics) -
             after = np.concatenate([outline[1:], outline[:1]])
             outlines.append((outline + _ALONG * (after - outline)).reshape(-1, 2))
     if not outlines:
-        return _rectangle([], lens, LENS_MARGIN_PX)
+        return NOTHING
     sides = np.concatenate(outlines)
     places = lens.project(np.column_stack([sides, np.ones(len(sides))]))
     lost = np.isnan(places[:, 0])
     if lost.any():
         away = sides[lost]
         places[lost] = BEYOND_PX * away / np.maximum(np.linalg.norm(away, axis=1)[:, None], 1e-9)
-    ends = np.cumsum([len(each) for each in outlines])[:-1]
-    return _rectangle(np.split(places, ends), lens, LENS_MARGIN_PX)
+    return _rectangle(places, [len(each) for each in outlines], lens, LENS_MARGIN_PX)
 
 
 def _within_square(outline: NDArray[np.float64], half: float) -> NDArray[np.float64]:
