@@ -68,7 +68,6 @@ class FrameMaker:
         self._amodal: AmodalRenderer | None = None
         self._relighter = Relighter(scene.library.baked_scenes)
         self._made = 0
-        self._alone = False
         self.watch_light()
 
     def work_alone(self) -> None:
@@ -77,7 +76,6 @@ class FrameMaker:
         Light for moves is prepared by the first one, and a scene is drawn for its first frame: much
         of it may change before, and would be in memory twice.
         """
-        self._alone = True
         self._relighter.beforehand = False
 
     @property
@@ -189,7 +187,8 @@ class FrameMaker:
         if self._scene.world.scene == known:
             return
         specs = self._scene.agents.specs
-        if specs and not self._alone:  # else there is nobody to be drawn for
+        # Else there is nobody to be drawn for, or nothing is done ahead.
+        if specs and self._relighter.beforehand:
             lit = any(not LIT_VIEWS.isdisjoint(spec.views) for spec in specs)
             views = ("rgb",) if lit else ("depth",)
             self.look(Camera(intrinsics=_SMALL), *views)
