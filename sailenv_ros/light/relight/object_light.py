@@ -152,14 +152,14 @@ class ObjectLighting:
 
     def placed(self, thing: PlacedObject) -> PlacedInstance:
         """Return an object as rays meet it; the same one until it has moved."""
-        known = self._placed.get(thing.id)
-        if known is not None and known[0] == thing.place:
+        place, known = thing.place, self._placed.get(thing.id)
+        if known is not None and known[0] == place:
             return known[1]
         pose = thing.world_from_body
         shape = self._scene.shape_of(thing.model, thing.scale, None)
         radiance = self._radiance(thing.model, thing.scale, pose)
         made = PlacedInstance(shape, pose, None, radiance, True, True)
-        self._placed[thing.id] = thing.place, made
+        self._placed[thing.id] = place, made
         return made
 
     def _radiance_of_change(self, change: Change) -> Floats | None:
