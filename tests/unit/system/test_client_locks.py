@@ -79,8 +79,13 @@ TAKE = """
 import os, sys
 from sailenv_ros.system.client_locks import AgentName
 name = AgentName()
-if "fork" in sys.argv and not os.fork():
-    sys.stdin.read()
+if "fork" in sys.argv:
+    begun, begins = os.pipe()
+    if not os.fork():
+        os.write(begins, b".")
+        sys.stdin.read()
+        os._exit(0)
+    os.read(begun, 1)  # before it begins a fork holds what its parent does
 print(name.text, flush=True)
 sys.stdin.read()
 """
