@@ -77,7 +77,7 @@ class _Scratch:
     Parameters
     ----------
     threads : int
-        How many threads draw. The result does not depend on it.
+        How many threads draw; may be changed at any time. The result does not depend on it.
 
     Raises
     ------
@@ -89,7 +89,7 @@ class _Scratch:
     _FREE: ClassVar[Kernel]
 
     def __init__(self, threads: int) -> None:
-        self._threads = threads
+        self.threads = threads
         self._handle = np.zeros(1, np.uint64)
         self._MAKE(self._handle)
 
@@ -165,7 +165,7 @@ class Drawing(_Scratch):
         outputs["attributes_at"][0, : len(attributes)] = [address(a) for a in attributes]
         listed = view, instances, _listed(parts), _listed(glass), light, outputs
         if poses is None:
-            _PICTURE(self._threads, self._handle, *listed)
+            _PICTURE(self.threads, self._handle, *listed)
             return
         names = ("view", "instances", "parts", "glass", "light", "outputs")
         rows, moving = len(poses.camera_from_world), len(poses.moving)
@@ -174,7 +174,7 @@ class Drawing(_Scratch):
         checked("moving", poses.moving, np.int64, (moving,))
         checked("world_from_moving", poses.world_from_moving, np.float64, (rows, moving, 4, 4))
         _ROLLING(
-            self._threads,
+            self.threads,
             scratch=self._handle,
             **dict(zip(names, listed, strict=True)),
             poses=rows,
@@ -218,7 +218,7 @@ class Drawing(_Scratch):
                 checked(name, array, np.float32, (size, size + ROW_PADDING))
         checked("changed", changed, np.uint8, ((size + 15) // 16,))
         _SHADOW(
-            self._threads,
+            self.threads,
             self._handle,
             map_from_world,
             instances,
@@ -268,7 +268,7 @@ class AmodalDrawing(_Scratch):
         count = len(starts) - 1
         results = np.empty((count, AMODAL_NUMBERS), np.int64)
         listed = _listed(parts)
-        _AMODAL(self._threads, self._handle, view, instances, listed, starts, count, results)
+        _AMODAL(self.threads, self._handle, view, instances, listed, starts, count, results)
         boxes = results[results[:, 1] > 0, 6:]
         size = int(((boxes[:, 2] - boxes[:, 0] + 1) * (boxes[:, 3] - boxes[:, 1] + 1)).sum())
         depths = np.empty(size, np.float32)

@@ -20,6 +20,7 @@ __all__ = [
     "BACKEND_NAMES",
     "BackendName",
     "RenderBackend",
+    "RenderRequest",
     "RenderedViews",
 ]
 
@@ -27,6 +28,34 @@ BackendName: TypeAlias = Literal["auto", "native", "gl"]
 
 BACKEND_NAMES: tuple[BackendName, ...] = get_args(BackendName)
 """Names of back ends that can be requested."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class RenderRequest:
+    """What is asked of a renderer for one frame.
+
+    Attributes
+    ----------
+    snapshot : WorldSnapshot
+        The world now.
+    camera : Camera
+    views : tuple of str
+        Names in `frame.VIEWS`.
+    previous : Observation or None
+        What the same camera saw before, which flow and automatic exposure refer to; None if there
+        is nothing.
+    rows : RowPoses or None
+        Poses of each row where the shutter rolls; snapshot and camera are those of the middle.
+    samples : sequence of Observation
+        Whose light is averaged in the picture; none: that of the snapshot.
+    """
+
+    snapshot: WorldSnapshot
+    camera: Camera
+    views: tuple[str, ...]
+    previous: Observation | None = None
+    rows: RowPoses | None = None
+    samples: Sequence[Observation] = ()
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -87,23 +116,24 @@ class RenderBackend(Protocol):
 
         Parameters
         ----------
-        snapshot : WorldSnapshot
-            The world now.
-        previous : Observation or None
-            What the same camera saw before, which flow and automatic exposure refer to; None if
-            there is nothing.
-        camera : Camera
-        views : iterable of str
-            Names in `frame.VIEWS`.
-        rows : RowPoses or None
-            Poses of each row where the shutter rolls; snapshot and camera are those of the middle.
-        samples : sequence of Observation
-            Whose light is averaged in the picture; none: that of the snapshot.
+        snapshot, previous, camera, views, rows, samples
+            As in `RenderRequest`.
 
         Raises
         ------
         UnknownName, InvalidRequest
             If there is no such view, or none that this renderer can make.
+        """
+
+    def render_all(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
+        """Make the wanted views of several cameras; see `render`.
+
+        Those of one instant may be drawn side by side; the views do not depend on it.
+
+        Raises
+        ------
+        UnknownName, InvalidRequest
+            As `render`.
         """
 
     def close(self) -> None:

@@ -115,7 +115,7 @@ class SimulationCore:
         )
         self.world.frustum_planes = self._frustum_planes
         self.frames = FrameMaker(self.scene, renderer, lockstep=mode == "lockstep")
-        self.streams = StreamSchedule(self.scene, self.render)
+        self.streams = StreamSchedule(self.scene, self.render_all)
         self.space = SpaceQueries(lambda: self.world)
         self.editor = SceneEditor(self.scene)
         self.scene_writer = SceneWriter(self.scene)
@@ -288,12 +288,16 @@ class SimulationCore:
         UnknownName
             If the renderer cannot make a view, with those that it can.
         """
-        wanted = checked_views(views, supported=self.supported_views)
+        return self.render_all([(record, views)])[0]
+
+    def render_all(self, wanted: Sequence[tuple[AgentRecord, Iterable[str]]]) -> list[Frame]:
+        """Render one frame of each of some agents now; see `render`."""
+        known = self.supported_views
         began_s = time.perf_counter()
+        checked = [(record, checked_views(views, supported=known)) for record, views in wanted]
         self.randomiser.before_frame()
-        return self.frames.frame(
-            record,
-            wanted,
+        return self.frames.frames(
+            checked,
             began_s=began_s,
             info=self._info_of_frames(),
             randomised=self.randomiser.record,
@@ -305,13 +309,7 @@ class SimulationCore:
         return PresentScene(self.world.snapshot(), lens, self.frames, self.space)
 
     def draw_amodal(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
-        """Draw each object of a snapshot alone, whatever is seen of it; or only the one of that id.
-
-        Raises
-        ------
-        NativeLibraryError
-            If there is no native library, which draws them.
-        """
+        """Draw each object of a snapshot alone, or one; see `FrameMaker.draw_amodal`."""
         return self.frames.draw_amodal(snapshot, camera, only)
 
     def open_stream(

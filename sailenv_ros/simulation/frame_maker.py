@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidState
+from sailenv_ros.frame.data import DrawAmodal
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.light.relight.relighter import Relighter
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.picture.auto_exposure import with_exposure
 from sailenv_ros.simulation.agent_record import AgentRecord
 from sailenv_ros.simulation.live_scene import LiveScene
@@ -93,68 +94,85 @@ class FrameMaker:
         self._is_new = True
         self._relighter.watch(self._scene.world.snapshot())
 
-    def frame(
+    def frames(
         self,
-        record: AgentRecord,
-        views: Sequence[str],
+        wanted: Sequence[tuple[AgentRecord, tuple[str, ...]]],
         *,
         began_s: float,
         info: SceneInfo,
         randomised: Mapping[str, Any] | None,
         lesson: LessonState | None,
-    ) -> Frame:
-        """Render one frame of an agent now.
+    ) -> list[Frame]:
+        """Render one frame of each of some agents now.
 
         Parameters
         ----------
-        record : AgentRecord
-        views : sequence of str
-            Of those that the renderer can make.
+        wanted : sequence of (AgentRecord, tuple of str)
+            Whose frames, and their views: of those that the renderer can make.
         began_s : float
-            When its making began, by `time.perf_counter` [s].
+            When their making began, by `time.perf_counter` [s].
         info : SceneInfo
-            What clients find the frame's ids in.
+            What clients find the frames' ids in.
         randomised : mapping or None
-            What was drawn at random for it.
+            What was drawn at random for them.
         lesson : LessonState or None
         """
-        self._made += 1
-        if self._made == GIVES_BACK:
+        before, self._made = self._made, self._made + len(wanted)
+        if before < GIVES_BACK <= self._made:
             give_back_freed_memory()
         world = self._scene.world
-        snapshot = self._lit(world.snapshot(), wanted=not LIT_VIEWS.isdisjoint(views))
-        exposure = exposed(record, snapshot, self._scene.agents.camera(record, world), world)
-        observed = exposure.observed
-        snapshot, camera, rows = observed.snapshot, observed.camera, observed.rows
-        drawn_alone = snapshot if rows is None else None
-        past = record.past(snapshot.sim_time_ns)
-        rendered = self._renderer.render(
-            snapshot, past, camera, views, rows=rows, samples=exposure.samples
-        )
-        record.remember(replace(observed, depth=rendered.depth, adapted=rendered.adapted))
-        record.sequence += 1
-        return Frame(
-            agent=record.spec.name,
-            scene=info.scene,
-            epoch=info.epoch,
-            revision=info.revision,
-            sequence=record.sequence,
-            stamp_ns=snapshot.sim_time_ns,
-            dt_ns=0 if past is None else snapshot.sim_time_ns - past.snapshot.sim_time_ns,
-            camera=camera,
-            depth_range_m=record.spec.depth_range_m,
-            views=rendered.views,
-            timings_s={**rendered.timings_s, "render": time.perf_counter() - began_s},
-            info=info,
-            states=exposure.states,
-            row_poses=rows,
-            randomised=randomised,
-            lesson=lesson,
-            exposure=with_exposure(camera, rendered.adapted).picture.exposure,
-            draw_amodal=lambda only=0: self.run_later(
-                lambda: self.draw_amodal(drawn_alone, camera, only)
-            ),
-        )
+        lit = any(not LIT_VIEWS.isdisjoint(views) for _, views in wanted)
+        snapshot = self._lit(world.snapshot(), wanted=lit)
+        exposures = [
+            exposed(record, snapshot, self._scene.agents.camera(record, world), world)
+            for record, _ in wanted
+        ]
+        requests = [
+            RenderRequest(
+                snapshot=exposure.observed.snapshot,
+                previous=record.past(exposure.observed.snapshot.sim_time_ns),
+                camera=exposure.observed.camera,
+                views=views,
+                rows=exposure.observed.rows,
+                samples=exposure.samples,
+            )
+            for (record, views), exposure in zip(wanted, exposures, strict=True)
+        ]
+        made = self._renderer.render_all(requests)
+        frames = []
+        for (record, _), exposure, request, rendered in zip(
+            wanted, exposures, requests, made, strict=True
+        ):
+            camera, now, past = request.camera, request.snapshot, request.previous
+            observed = exposure.observed
+            record.remember(replace(observed, depth=rendered.depth, adapted=rendered.adapted))
+            record.sequence += 1
+            frames.append(
+                Frame(
+                    agent=record.spec.name,
+                    scene=info.scene,
+                    epoch=info.epoch,
+                    revision=info.revision,
+                    sequence=record.sequence,
+                    stamp_ns=now.sim_time_ns,
+                    dt_ns=0 if past is None else now.sim_time_ns - past.snapshot.sim_time_ns,
+                    camera=camera,
+                    depth_range_m=record.spec.depth_range_m,
+                    views=rendered.views,
+                    timings_s={**rendered.timings_s, "render": time.perf_counter() - began_s},
+                    info=info,
+                    states=exposure.states,
+                    row_poses=request.rows,
+                    randomised=randomised,
+                    lesson=lesson,
+                    exposure=with_exposure(camera, rendered.adapted).picture.exposure,
+                    draw_amodal=self._draws_alone(None if request.rows else now, camera),
+                )
+            )
+        return frames
+
+    def _draws_alone(self, snapshot: WorldSnapshot | None, camera: Camera) -> DrawAmodal:
+        return lambda only=0: self.run_later(lambda: self.draw_amodal(snapshot, camera, only))
 
     def _lit(self, snapshot: WorldSnapshot, *, wanted: bool) -> WorldSnapshot:
         """Return the present instant in its light, and make the renderer ready meanwhile."""

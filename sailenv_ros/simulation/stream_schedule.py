@@ -22,7 +22,7 @@ class StreamSchedule:
     ----------
     scene : LiveScene
     render : callable
-        ``render(record, views)`` returns a frame of an agent now.
+        ``render([(record, views), ...])`` returns a frame of each agent now.
 
     Attributes
     ----------
@@ -31,7 +31,9 @@ class StreamSchedule:
     """
 
     def __init__(
-        self, scene: LiveScene, render: Callable[[AgentRecord, Iterable[str]], Frame]
+        self,
+        scene: LiveScene,
+        render: Callable[[Sequence[tuple[AgentRecord, Iterable[str]]]], Sequence[Frame]],
     ) -> None:
         self.skipped_frames = 0
         self._scene = scene
@@ -87,19 +89,28 @@ class StreamSchedule:
         self.render(r.spec.name for r in self._wanted() if r.due_step() <= now)
 
     def render(self, agents: Iterable[str]) -> None:
-        """Render a frame of each agent for its streams, and count those it is too late for."""
+        """Render a frame of each agent for its streams, and count those it is too late for.
+
+        Those of a rig's cameras are rendered at once.
+        """
+        records = [self._scene.agents[name] for name in agents]
+        rigs: dict[str, list[AgentRecord]] = {}
+        for record in records:
+            rigs.setdefault(record.spec.body or record.spec.name, []).append(record)
+        for cameras in rigs.values():
+            self._render_together(cameras)
+
+    def _render_together(self, cameras: Sequence[AgentRecord]) -> None:
         now = self._scene.world.step_count
-        for name in agents:
-            record = self._scene.agents[name]
-            # Another frame of this walk may have taken so long that this stream was closed.
-            if record.due_step() > now or not record.wanted_views:
-                continue
-            # Who changes its mind while this is drawn gets it all the same: it is not drawn again.
-            waiting = [stream for stream in record.streams if stream.views]
-            frame = self._render(record, record.wanted_views)
+        # Other frames of this walk may have taken so long that a stream was closed.
+        due = [record for record in cameras if record.due_step() <= now and record.wanted_views]
+        # Who changes its mind while this is drawn gets it all the same: it is not drawn again.
+        waiting = [[stream for stream in record.streams if stream.views] for record in due]
+        frames = self._render([(record, record.wanted_views) for record in due]) if due else ()
+        for record, streams, frame in zip(due, waiting, frames, strict=True):
             # One of those that are passed over is the frame just made.
             self.skipped_frames += max(0, record.skip_to(now + 1) - 1)
-            for stream in waiting:
+            for stream in streams:
                 stream.put(frame)
 
     def _wanted(self) -> list[AgentRecord]:

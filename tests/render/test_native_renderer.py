@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import UnknownName
 from sailenv_ros.native.drawing import structure_sizes
 from sailenv_ros.native.library import load_library, using_instruction_set
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.frame_light import _texels_in_use
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
@@ -21,6 +23,7 @@ from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.digests import appearance_digest
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.lights import Environment, Light, SkyMap
+from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.snapshot import Observation
 from tests.render.test_picture import gallery
 from tests.support.allocator import allocations
@@ -39,6 +42,15 @@ from tests.support.tiny_scenes import (
 )
 
 GREY = (1.0, 1.0, 1.0)
+
+FISHEYE = CameraIntrinsics(
+    width=120,
+    height=90,
+    fx_px=40.0,
+    fy_px=40.0,
+    distortion_model="equidistant",
+    distortion=(0.02, -0.004, 0.001, 0.0),
+)
 
 VIEWS = ("rgb", "depth", "category", "instance", "normals", "flow", "flow_valid", "occlusion")
 
@@ -138,6 +150,51 @@ def test_bytes_do_not_depend_on_threads(size: tuple[int, int]) -> None:
         renderer.close()
     for other in made[1:]:
         assert {name for name in VIEWS if other[name] != made[0][name]} == set()
+
+
+@pytest.mark.parametrize("threads", [2, 4])
+def test_cameras_side_by_side_see_what_each_sees_alone(threads: int) -> None:
+    scene = gallery()
+    settings = PictureSettings(supersampling=2)
+    cameras = [
+        camera_at(width=160, height=120),
+        camera_at(Pose((0.3, 0.1, 0.0)), width=200, height=90),
+        replace(camera_at(Pose((0.2, 0.0, 0.1))), intrinsics=FISHEYE),
+        replace(camera_at(Pose((0.1, 0.1, 0.1)), width=96, height=80), picture=settings),
+    ]
+    asked = ("rgb", "depth"), ("normals", "instance"), VIEWS, VIEWS
+    alone, together = NativeRenderer(threads=1), NativeRenderer(threads=threads)
+    try:
+        moved = [replace(camera, pose=Pose((0.15, 0.0, 0.02))) for camera in cameras]
+        pasts = [
+            Observation(
+                snapshot=scene,
+                camera=camera,
+                depth=alone.render(scene, None, camera, ("occlusion",)).depth,
+            )
+            for camera in moved
+        ]
+        requests = [
+            RenderRequest(snapshot=scene, camera=camera, views=views, previous=past)
+            for camera, views, past in zip(cameras, asked, pasts, strict=True)
+        ]
+        made = together.render_all(requests)
+        for rendered, request in zip(made, requests, strict=True):
+            expected = alone.render(scene, request.previous, request.camera, request.views)
+            assert rendered.views.keys() == expected.views.keys() == set(request.views)
+            for view, array in expected.views.items():
+                assert rendered.views[view].tobytes() == array.tobytes(), view
+            assert (rendered.depth is None) == (expected.depth is None)
+            if rendered.depth is not None and expected.depth is not None:
+                assert rendered.depth.tobytes() == expected.depth.tobytes()
+        refused = replace(requests[0], views=("no_such_view",))
+        with pytest.raises(UnknownName, match="no_such_view"):
+            together.render_all([requests[1], refused])
+        again = together.render_all(requests[:2])
+        assert again[0].views["rgb"].tobytes() == made[0].views["rgb"].tobytes()
+    finally:
+        alone.close()
+        together.close()
 
 
 def test_bytes_do_not_depend_on_the_instruction_set() -> None:

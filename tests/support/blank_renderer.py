@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from sailenv_ros.render.contract import RenderedViews
+from sailenv_ros.render.contract import RenderedViews, RenderRequest
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
@@ -16,7 +16,8 @@ from sailenv_ros.types.views import VIEWS, checked_views
 class BlankRenderer:
     """Gives zeros of the right shape.
 
-    `calls` holds (snapshot, previous, camera, views), `preloaded` the contents of `preload`.
+    `calls` holds (snapshot, previous, camera, views), `together` the names of the cameras of each
+    call of `render_all`, `preloaded` the contents of `preload`.
     """
 
     description = "blank"
@@ -25,6 +26,7 @@ class BlankRenderer:
 
     def __init__(self) -> None:
         self.calls: list[tuple[WorldSnapshot, Observation | None, Camera, tuple[str, ...]]] = []
+        self.together: list[tuple[str, ...]] = []
         self.preloaded: list[SceneContents] = []
         self.closed = False
 
@@ -46,6 +48,10 @@ class BlankRenderer:
         height, width = camera.intrinsics.height, camera.intrinsics.width
         arrays = {v: np.zeros(VIEWS[v].shape(height, width), VIEWS[v].dtype) for v in wanted}
         return RenderedViews(views=arrays, depth=arrays.get("depth"), timings_s={})
+
+    def render_all(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
+        self.together.append(tuple(request.camera.name for request in requests))
+        return [self.render(r.snapshot, r.previous, r.camera, r.views) for r in requests]
 
     def close(self) -> None:
         self.closed = True

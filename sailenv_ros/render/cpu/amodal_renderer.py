@@ -13,8 +13,8 @@ from sailenv_ros.frame.lens_rays import depth_shares, tells_depth
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.native.drawing import AmodalDrawing
 from sailenv_ros.native.library import thread_count
+from sailenv_ros.render.cpu.camera_drawing import native_view
 from sailenv_ros.render.cpu.part_table import PartTable
-from sailenv_ros.render.cpu.renderer import native_view
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import WorldSnapshot
 

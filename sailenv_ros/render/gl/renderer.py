@@ -32,7 +32,7 @@ from sailenv_ros.render.gl.scene_light import SceneLight
 from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
-from sailenv_ros.render.scene.flat_mirrors import SeenMirror, Window
+from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, SeenMirror, Window
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
@@ -76,6 +76,7 @@ class Renderer(DrawingRenderer):
             self._context.release()
             raise
         self._outputs = written_views()
+        self._mirrors = FlatMirrors()
         self._draws: DrawList | None = None
         self._native: NativeRenderer | None = None
 

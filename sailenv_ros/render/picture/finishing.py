@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,24 +17,26 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame.lens_rays import reach_view
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.render.contract import RenderedViews
+from sailenv_ros.render.contract import RenderedViews, RenderRequest
 from sailenv_ros.render.picture.annotate import annotate, with_depth
 from sailenv_ros.render.picture.auto_exposure import with_exposure
 from sailenv_ros.render.picture.measured_depth import MEASURED_FROM, measured_depth
 from sailenv_ros.render.picture.post_pass import Light, PostPass
-from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
 from sailenv_ros.types.views import LIT_VIEWS, VIEWS, checked_views
 
-__all__ = ["Arrays", "DrawingRenderer", "Timings"]
+__all__ = ["Arrays", "Draw", "DrawingRenderer", "Timings", "lacks_depth"]
 
 Arrays: TypeAlias = dict[str, NDArray[Any]]
 """Arrays that were drawn, by the names of views and of what views are made of."""
 
 Timings: TypeAlias = dict[str, float]
 """Wall time of each stage [s]."""
+
+Draw: TypeAlias = Callable[[Observation, frozenset[str], Timings], Arrays]
+"""See `DrawingRenderer._draw`."""
 
 
 class DrawingRenderer(ABC):
@@ -48,8 +50,6 @@ class DrawingRenderer(ABC):
 
     def __init__(self, threads: int | None = None) -> None:
         self._threads = thread_count() if threads is None else threads
-        self._post = PostPass(self._threads)
-        self._mirrors = FlatMirrors()
         self._closed = False
 
     @property
@@ -71,10 +71,35 @@ class DrawingRenderer(ABC):
         samples: Sequence[Observation] = (),
     ) -> RenderedViews:
         """Make the wanted views of one camera; see `RenderBackend.render`."""
+        request = RenderRequest(
+            snapshot=snapshot,
+            previous=previous,
+            camera=camera,
+            views=checked_views(views, supported=self.supported_views),
+            rows=rows,
+            samples=samples,
+        )
+        return self._finished(request, self._draw, self._threads)
+
+    def render_all(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
+        """Make the views of several cameras, one after another; see `RenderBackend.render_all`."""
+        return [
+            self.render(
+                *(asked.snapshot, asked.previous, asked.camera, asked.views),
+                rows=asked.rows,
+                samples=asked.samples,
+            )
+            for asked in requests
+        ]
+
+    def _finished(self, request: RenderRequest, draw: Draw, threads: int) -> RenderedViews:
+        """Draw and finish what one request asks for, whose views were checked."""
         if self._closed:
             raise RenderError("the renderer was closed")
-        wanted = frozenset(checked_views(views, supported=self.supported_views))
-        drawn = wanted
+        snapshot, camera, previous = request.snapshot, request.camera, request.previous
+        rows, samples = request.rows, request.samples
+        post = PostPass(threads)
+        drawn = wanted = frozenset(request.views)
         if "measured_depth" in wanted:
             drawn |= MEASURED_FROM
         lit = not wanted.isdisjoint(LIT_VIEWS)
@@ -83,35 +108,34 @@ class DrawingRenderer(ABC):
             adapted = previous.adapted
         if lit:
             drawn |= {"rgb"}
-        keeps_depth = any(VIEWS[view].needs_past_depth for view in wanted)
         timings: Timings = {}
         with self._drawing_context():
-            if keeps_depth and previous is not None and previous.depth is None:
-                past = self._draw(previous, frozenset({"depth"}), {})["surface"]
+            if previous is not None and lacks_depth(request):
+                past = draw(previous, frozenset({"depth"}), {})["surface"]
                 previous = with_depth(previous, past)
             now = Observation(snapshot=snapshot, camera=camera, rows=rows)
             apart = bool(samples) and lit
-            arrays = self._draw(now, drawn - {"rgb"} if apart else drawn, timings)
-            light = self._mean_light(samples, timings) if apart else None
+            arrays = draw(now, drawn - {"rgb"} if apart else drawn, timings)
+            light = self._mean_light(samples, draw, post, timings) if apart else None
         began = time.perf_counter()
         surface = arrays.pop("surface")
         if lit:
             if light is None:
-                light = self._light_of(now, arrays, surface)
-            light = self._post.through_lens(light, camera)
+                light = self._light_of(now, arrays, surface, post)
+            light = post.through_lens(light, camera)
             if camera.picture.auto_exposure_s:
-                light = Light(self._post.at_sensor(light))
-                adapted = self._post.adapted(light, snapshot, camera, surface, adapted)
+                light = Light(post.at_sensor(light))
+                adapted = post.adapted(light, snapshot, camera, surface, adapted)
             taken = with_exposure(camera, adapted)
             if "rgb" in wanted:
-                arrays["rgb"] = self._post.developed(light, snapshot, taken)
+                arrays["rgb"] = post.developed(light, snapshot, taken)
             if "raw" in wanted:
-                arrays["raw"] = self._post.raw(light, snapshot, taken)
+                arrays["raw"] = post.raw(light, snapshot, taken)
             timings["post"] = time.perf_counter() - began
             began = time.perf_counter()
         reach = reach_view(camera.intrinsics)
         truth = annotate(
-            *(surface, snapshot, previous, camera, wanted | {reach}, self._threads),
+            *(surface, snapshot, previous, camera, wanted | {reach}, threads),
             rows=rows,
             places=arrays.pop("places", None),
         )
@@ -125,7 +149,7 @@ class DrawingRenderer(ABC):
         return RenderedViews(
             views={name: arrays[name] for name in wanted},
             # A caller may write into its own views; the past must stay what it was.
-            depth=depth if reach not in wanted else depth.copy() if keeps_depth else None,
+            depth=depth if reach not in wanted else depth.copy() if _keeps_depth(request) else None,
             adapted=adapted,
             timings_s=timings,
         )
@@ -137,10 +161,10 @@ class DrawingRenderer(ABC):
             self._release()
 
     def _light_of(
-        self, observed: Observation, arrays: Arrays, surface: NDArray[np.float32]
+        self, observed: Observation, arrays: Arrays, surface: NDArray[np.float32], post: PostPass
     ) -> Light:
         """Return the light that reaches the sensor, of what was drawn."""
-        return self._post.gathered(
+        return post.gathered(
             arrays.pop("rgb"),
             surface,
             observed.snapshot,
@@ -149,12 +173,14 @@ class DrawingRenderer(ABC):
             arrays.pop("samples", None),
         )
 
-    def _mean_light(self, samples: Sequence[Observation], timings: Timings) -> Light:
+    def _mean_light(
+        self, samples: Sequence[Observation], draw: Draw, post: PostPass, timings: Timings
+    ) -> Light:
         """Return the mean light of several instants."""
         total: NDArray[np.float32] | None = None
         for sample in samples:
-            arrays = self._draw(sample, frozenset({"rgb"}), timings)
-            light = self._post.at_sensor(self._light_of(sample, arrays, arrays["surface"]))
+            arrays = draw(sample, frozenset({"rgb"}), timings)
+            light = post.at_sensor(self._light_of(sample, arrays, arrays["surface"], post))
             total = light.astype(np.float32) if total is None else total + light
         assert total is not None
         return Light((total / len(samples)).astype(np.float16))
@@ -183,3 +209,13 @@ class DrawingRenderer(ABC):
     @abstractmethod
     def _release(self) -> None:
         """Free everything."""
+
+
+def lacks_depth(request: RenderRequest) -> bool:
+    """Tell whether the depth of a request's past is needed and has to be drawn again."""
+    past = request.previous
+    return past is not None and past.depth is None and _keeps_depth(request)
+
+
+def _keeps_depth(request: RenderRequest) -> bool:
+    return any(VIEWS[view].needs_past_depth for view in request.views)

@@ -42,11 +42,13 @@ class RigOperations(Caller):
         UnknownName, InvalidState
             If there is no such agent or view, or the agent has no cameras.
         """
+        cameras = core.agents.rig(agent)
+        frames = core.render_all(
+            [(record, record.spec.views if views is None else views) for record in cameras]
+        )
         return {
-            camera_of(record.spec.name): core.render(
-                record, record.spec.views if views is None else views
-            )
-            for record in core.agents.rig(agent)
+            camera_of(record.spec.name): frame
+            for record, frame in zip(cameras, frames, strict=True)
         }
 
     def get_frames(

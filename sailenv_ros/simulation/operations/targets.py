@@ -6,7 +6,7 @@ None knows who has it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
@@ -134,6 +134,9 @@ class DrawsFrames(HasAgents, Protocol):
 
     def render(self, record: AgentRecord, views: Iterable[str]) -> Frame:
         """Render one frame of an agent now."""
+
+    def render_all(self, wanted: Sequence[tuple[AgentRecord, Iterable[str]]]) -> list[Frame]:
+        """Render one frame of each of some agents now."""
 
     def draw_amodal(self, snapshot: WorldSnapshot, camera: Camera, only: int = 0) -> AmodalMasks:
         """Draw each object of a snapshot alone."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec, stereo_baseline_m
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
+from tests.support.blank_renderer import BlankRenderer
 from tests.support.lockstep_core import lockstep_core
 from tests.support.ray_cast import cast
 
@@ -241,6 +243,31 @@ def test_streamed_frames_of_a_rig_have_equal_stamps(core: SynchronousSimulation)
         core.step(12)
         stamps.append(tuple(stream.get(0.0).stamp_ns for stream in streams))
     assert stamps == [(50_000_000,) * 2, (100_000_000,) * 2, (150_000_000,) * 2]
+
+
+def test_cameras_of_a_rig_are_rendered_at_once(tmp_path: Path) -> None:
+    """Captured or streamed; other agents' frames are not kept back for them."""
+    stage = tmp_path / "stage.yaml"
+    stage.write_text(STAGE, encoding="utf-8")
+    renderer = BlankRenderer()
+    core = lockstep_core(stage, renderer=renderer)
+    core.register_agent(AgentSpec(name="alone", intrinsics=LENS))
+    try:
+        core.capture_rig(agent="head")
+        streams = [
+            core.open_stream(name, ("depth",), lambda _: None)
+            for name in ("head/left", "alone", "head/right")
+        ]
+        for name in ("head", "alone"):
+            core.set_rate(20.0, agent=name)
+        renderer.together.clear()
+        core.capture_rig(agent="head")
+        core.step(12)
+        rig = ("head/left", "head/right")
+        assert Counter(renderer.together) == {rig: 3, ("alone",): 2}
+        assert [stream.get(0.0).stamp_ns for stream in streams] == [50_000_000] * 3
+    finally:
+        core.close()
 
 
 def test_a_scene_s_rig_is_saved_as_it_is(core: SynchronousSimulation, tmp_path: Path) -> None:
