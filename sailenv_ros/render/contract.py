@@ -32,7 +32,7 @@ BACKEND_NAMES: tuple[BackendName, ...] = get_args(BackendName)
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class RenderRequest:
-    """What is asked of a renderer for one frame.
+    """Everything that is asked of a renderer for one frame.
 
     Attributes
     ----------
