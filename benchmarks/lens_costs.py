@@ -20,6 +20,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -100,7 +101,7 @@ def main() -> None:
             then = replace(now, pose=look_at(np.add(EYE, 0.01), TARGET))
             past = Observation(snapshot=before, camera=then)
             began, used = time.perf_counter(), time.process_time()
-            rendered = renderer.render(snapshot, past, now, FIVE_VIEWS)
+            rendered = renderer.render(RenderRequest(snapshot, now, FIVE_VIEWS, past))
             if number < WARM_UP:
                 continue
             wall[name].append(time.perf_counter() - began)

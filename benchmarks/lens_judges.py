@@ -33,6 +33,8 @@ FARTHER = 1.1
 WRONG_POSE, FAR_OFF = 10.0, 6.0
 """As often the median residual, or more, has a view whose pose is the wrong one of two; and a
 corner that was not well located."""
+MOST_RUNS = 8
+"""Of `cv2.omnidir`, each without what the one before showed to be wrong."""
 FISHEYE_DEG = 80.0, 86.0
 """From the axis to the last corners that `cv2.fisheye` gets: at first, and finally."""
 
@@ -116,15 +118,16 @@ def fisheye_law(matrix: Array, law: Array, rays: Array) -> Array:
 
 
 def omnidir(views: Sequence[View], size: tuple[int, int]) -> Calibrated:
-    """Calibrate by `cv2.omnidir.calibrate`, twice.
+    """Calibrate by `cv2.omnidir.calibrate`, until all that it was given is right.
 
     A flat board has two poses of nearly the same picture, and this calibrator's first guess can be
-    the wrong one, which it never leaves. Such views are left out of the second run, and told; so
-    are corners that lie far off, of which this calibrator bears none.
+    the wrong one, which it never leaves. Such views are left out of the next run, and told; so
+    are corners that lie far off, of which this calibrator bears none: one that was located 4 px
+    beside, at the picture's rim, hides others that err less.
     """
     kept = np.arange(len(views))
     corners = [(view.points, view.pixels) for view in views]
-    for last in (False, True):
+    for left in reversed(range(MOST_RUNS)):
         rms, matrix, xi, law, turns, shifts, used = CV.omnidir.calibrate(
             [corners[n][0].reshape(1, -1, 3) for n in kept],
             [corners[n][1].reshape(1, -1, 2) for n in kept],
@@ -138,16 +141,18 @@ def omnidir(views: Sequence[View], size: tuple[int, int]) -> Calibrated:
         kept, mirror = kept[np.ravel(used)], float(np.ravel(xi)[0])
         project = partial(mirror_law, matrix, mirror, law.reshape(1, 4))
         found = list(map(pose_of, turns, shifts))
-        if last:
-            break
         off = [_off(views[n], project, pose) for n, pose in zip(kept, found, strict=True)]
         median = np.median(np.concatenate(off))
         right = np.array([np.median(each) < WRONG_POSE * median for each in off])
         if not right.all():
             print(f"cv2.omnidir: {(~right).sum()} views left out", file=sys.stderr)
+        before = sum(len(corners[n][0]) for n in kept)
         for n, each in zip(kept, off, strict=True):
             near = each < FAR_OFF * median
             corners[n] = views[n].points[near], views[n].pixels[near]
+        same = right.all() and sum(len(corners[n][0]) for n in kept) == before
+        if same or not left:
+            break
         kept = kept[right]
     poses: list[Array | None] = [None] * len(views)
     for n, pose in zip(kept, found, strict=True):

@@ -5,13 +5,14 @@
 Needs opencv-contrib-python 4.x, SciPy and pupil-apriltags, and nothing of this project. The
 detector knows pin-holes alone: OpenCV rectifies the pictures by K and D of the lens, into a camera
 that looks at the tag. Black shines a little, more here than there: it is taken away. To refine
-edges the detector reads nearest pixels, no farther away than `quad_decimate` and one: it gets
-pictures of twice their size, and a larger `quad_decimate`. Along an edge that nearly is a row or a
-column of pixels it errs by up to half a pixel, always to one side: the camera is rolled about its
-axis into three positions, and of a tag's poses the one counts that is nearest to their median. Tags
-are judged that are found in all three, whose sides have 100 px or more in the picture itself, and
-which are 10 px or more from its border. A row for each model: tags, errors of the direction of
-their axes [deg] and of their places [% of the distance]: median, 95 %, greatest.
+edges the detector reads nearest pixels, no farther away than `quad_decimate` and one, where all of
+a soft edge must lie: it gets pictures of twice their size, and a larger `quad_decimate`. Along an
+edge that nearly is a row or a column of pixels it errs by up to half a pixel, always to one side:
+the camera is rolled about its axis into three positions, and of a tag's poses the one counts that
+is nearest to their median. Tags are judged that are found in all three, whose sides have 100 px or
+more in the picture itself, and which are 10 px or more from its border. A row for each model: tags,
+errors of the direction of their axes [deg] and of their places [% of the distance]: median, 95 %,
+greatest.
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ TAG_CORNERS = (
 )
 ROLLS_DEG = (15.0, 45.0, 75.0)
 """The camera is turned about its axis by so much."""
-LARGER, DECIMATE = 2, 4.0
-"""Larger than the picture is the detector's; of that it first looks at every fourth pixel."""
+LARGER, DECIMATE = 2, 6.0
+"""Larger than the picture is the detector's; of that it first looks at every sixth pixel."""
 BLACK_PX, ALIKE = 161, 1.3
 """Black is averaged in squares of such sides; its light differs by less than this factor."""
 

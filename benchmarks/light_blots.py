@@ -24,6 +24,7 @@ from benchmarks.reference.scene_export import without_outside
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.sources import installed_sources
 from sailenv_ros.light.bake.pipeline import bake
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
@@ -101,7 +102,7 @@ def counted(
     renderer, total = NativeRenderer(), 0
     try:
         for number, camera in enumerate(cameras):
-            seen = renderer.render(snapshot, None, camera, VIEWS).views
+            seen = renderer.render(RenderRequest(snapshot, camera, VIEWS)).views
             blots = dark_blots(seen["rgb"], seen["albedo"], seen["normals"], seen["instance"])
             total += int(blots.sum())
             if output is not None and blots.any():

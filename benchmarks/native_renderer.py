@@ -37,7 +37,7 @@ import render_passes  # type: ignore[import-not-found]  # beside this file
 from sailenv_bench.experiments.baselines import BASELINES, BaselineScene
 from sailenv_bench.suite.measurement import Measurement
 from sailenv_ros.errors import SailenvError
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -92,7 +92,7 @@ def measure(
             for name, views in turns[number % len(turns) :] + turns[: number % len(turns)]:
                 began, busy = time.perf_counter(), time.process_time()
                 made = renderers[name].render(
-                    snapshot, past.get((name, views)), camera, SETS[views]
+                    RenderRequest(snapshot, camera, SETS[views], past.get((name, views)))
                 )
                 took, worked = time.perf_counter() - began, time.process_time() - busy
                 past[name, views] = Observation(snapshot=snapshot, camera=camera)
@@ -291,7 +291,7 @@ def measure_agents(scene: str, threads: int, frames: int) -> dict[str, dict[str,
             for agents in AGENTS:
                 began, busy = time.perf_counter(), time.process_time()
                 for camera in cameras[:agents]:
-                    renderer.render(snapshot, None, camera, FIVE_VIEWS)
+                    renderer.render(RenderRequest(snapshot, camera, FIVE_VIEWS))
                 if number >= WARM_UP:
                     wall[f"{name}, {agents} agents"].append(1e3 * (time.perf_counter() - began))
                     cpu[f"{name}, {agents} agents"].append(1e3 * (time.process_time() - busy))
@@ -313,7 +313,7 @@ def _timed(
     change: str | None,
 ) -> None:
     began = time.process_time()
-    renderer.render(_of(snapshot, contents), None, camera, FIVE_VIEWS)
+    renderer.render(RenderRequest(_of(snapshot, contents), camera, FIVE_VIEWS))
     if change is not None:
         times[change].append(1e3 * (time.process_time() - began))
 

@@ -17,6 +17,7 @@ import time
 from dataclasses import replace
 from unittest import mock
 
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.scene import reflection_points
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -86,7 +87,7 @@ def _effects(frames: int) -> None:
 
 def _cpu(renderer: NativeRenderer, snapshot: WorldSnapshot, camera: Camera) -> float:
     began = time.process_time()
-    renderer.render(snapshot, None, camera, ("rgb",))
+    renderer.render(RenderRequest(snapshot, camera, ("rgb",)))
     return time.process_time() - began
 
 

@@ -28,6 +28,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from sailenv_bench.experiments.bullet_bodies import BulletBodies
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -108,7 +109,9 @@ def measure(
             first = number % len(SETS)
             for name, views in [*SETS.items()][first:] + [*SETS.items()][:first]:
                 began = time.perf_counter()
-                rendered = renderers[name].render(snapshot, past[name], camera, views)
+                rendered = renderers[name].render(
+                    RenderRequest(snapshot, camera, views, past[name])
+                )
                 times[name]["whole"].append(time.perf_counter() - began)
                 for stage, seconds in rendered.timings_s.items():
                     times[name][stage].append(seconds)

@@ -16,6 +16,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from tests.support.light_faults import BLOCK_PX, bright_spots, dashes, surfaces_of
 from tests.support.plausible_views import plausible_views, room_at_rest
@@ -34,7 +35,7 @@ def counted(name: str, views: int, output: Path | None) -> list[tuple[int, int]]
     try:
         cameras = plausible_views(room, renderer, f"spots{name}", width=1024, height=768)
         for number, camera in enumerate(itertools.islice(cameras, views)):
-            seen = renderer.render(room, None, camera, VIEWS).views
+            seen = renderer.render(RenderRequest(room, camera, VIEWS)).views
             plain = np.isin(seen["instance"], structure)
             surfaces = surfaces_of(seen["instance"], seen["normals"], plain)
             lines = dashes(seen["rgb"], seen["albedo"], surfaces)

@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import WorldSnapshot
@@ -59,7 +60,7 @@ def _save(folder: Path, scene: str) -> None:
 def _drawn(snapshot: WorldSnapshot, camera: Camera) -> dict[str, NDArray[np.generic]]:
     renderer = NativeRenderer(threads=2)
     try:
-        views = renderer.render(snapshot, None, camera, VIEWS).views
+        views = renderer.render(RenderRequest(snapshot, camera, VIEWS)).views
         return {name: views[name].copy() for name in VIEWS}
     finally:
         renderer.close()

@@ -19,6 +19,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -97,7 +98,9 @@ def main() -> None:
             past = replace(past, depth=_depth(renderer, past))
             began, used = time.perf_counter(), time.process_time()
             renderer.render(
-                seen.snapshot, past, seen.camera, FIVE_VIEWS, rows=seen.rows, samples=averaged
+                RenderRequest(
+                    seen.snapshot, seen.camera, FIVE_VIEWS, past, rows=seen.rows, samples=averaged
+                )
             )
             if number >= WARM_UP:
                 wall[name].append(time.perf_counter() - began)
@@ -115,7 +118,9 @@ def main() -> None:
 
 def _depth(renderer: NativeRenderer, seen: Observation) -> NDArray[np.float32]:
     """Return the depth of an observation, which a frame before would have left."""
-    views = renderer.render(seen.snapshot, None, seen.camera, ("depth",), rows=seen.rows).views
+    views = renderer.render(
+        RenderRequest(seen.snapshot, seen.camera, ("depth",), rows=seen.rows)
+    ).views
     depth: NDArray[np.float32] = views["depth"]
     return depth
 

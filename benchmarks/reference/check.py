@@ -22,6 +22,7 @@ from benchmarks.reference.parts import Parts
 from benchmarks.reference.scene_export import scene_of, sensor
 from benchmarks.reference.tracing import HOME, ToolMissing, traced_views
 from sailenv_ros.assets.primitives import Primitives
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
@@ -184,7 +185,7 @@ def _both(
     stops = snapshot.contents.environment.exposure
     result = {}
     for view, camera in cameras.items():
-        picture = renderer.render(snapshot, None, camera, ("rgb",)).views["rgb"]
+        picture = renderer.render(RenderRequest(snapshot, camera, ("rgb",))).views["rgb"]
         result[view] = (radiance_of(picture, stops), traced[view].raw.astype(np.float64))
     return result
 

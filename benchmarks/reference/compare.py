@@ -41,7 +41,7 @@ from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.object_lights import with_object_light
 from sailenv_ros.native.library import thread_count
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -214,7 +214,7 @@ def _rendered(
     wanted = ("rgb", *SHOWN_BY)
     try:
         made = {
-            name: renderer.render(snapshot, None, camera, wanted).views
+            name: renderer.render(RenderRequest(snapshot, camera, wanted)).views
             for name, camera in cameras.items()
         }
         return {

@@ -31,6 +31,7 @@ from sailenv_ros.light.relight.quality import FINE, QUICK
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.native.library import thread_count
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.system.user_folders import cache_folder
@@ -312,7 +313,7 @@ def _pictures(
     """Return the picture, and one without tone curve."""
     plain = replace(camera, picture=PictureSettings(tone_curve="linear", exposure=-1.0))
     first, second = (
-        renderer.render(snapshot, None, one, ("rgb",)).views["rgb"].copy()
+        renderer.render(RenderRequest(snapshot, one, ("rgb",))).views["rgb"].copy()
         for one in (camera, plain)
     )
     return first, second

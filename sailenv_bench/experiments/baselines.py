@@ -21,6 +21,7 @@ from scipy.spatial.transform import Rotation
 from sailenv_bench.experiments.bullet_bodies import BulletBodies
 from sailenv_ros.errors import PhysicsError
 from sailenv_ros.extras import need
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.selection import make_backend
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -87,7 +88,7 @@ class _Ours:
     def draw(self) -> None:
         assert self._now is not None
         snapshot, camera = self._now
-        rendered = self._renderer.render(snapshot, self._past, camera, self._views)
+        rendered = self._renderer.render(RenderRequest(snapshot, camera, self._views, self._past))
         self._past = Observation(snapshot=snapshot, camera=camera, depth=rendered.depth)
 
     def close(self) -> None:

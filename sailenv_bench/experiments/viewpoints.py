@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.authoring.viewpoints.object_targets import Rule, Target, boxes_of, targets_of
 from sailenv_ros.authoring.viewpoints.object_view import SeenTarget, views_in_turn
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.selection import make_backend
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -171,21 +171,23 @@ class Stage:
 
     def _measured(self, target: Target, camera: Camera, rule: Rule) -> Measured | None:
         """Return cover, visible share and the instance view if they meet the rule."""
-        views = self._renderer.render(target.snapshot, None, camera, ("instance",)).views
+        views = self._renderer.render(RenderRequest(target.snapshot, camera, ("instance",))).views
         number = target.drawn.instance.id
         pixels = int((views["instance"] == number).sum())
         cover = pixels / views["instance"].size
         if not rule.cover[0] <= cover <= rule.cover[1]:
             return None
         wide = Camera(intrinsics=self._wide_lens, pose=camera.pose)
-        alone = self._lone_renderer.render(target.alone, None, wide, ("instance",)).views
+        alone = self._lone_renderer.render(RenderRequest(target.alone, wide, ("instance",))).views
         visible = pixels / max(1, int((alone["instance"] == number).sum()))
         return None if visible < rule.visible else (cover, visible, views["instance"])
 
     def _pictured(self, view: SeenTarget) -> Viewpoint:
         target, camera = view.target, view.camera
         cover, visible, instance = view.measured
-        picture = self._renderer.render(target.snapshot, None, camera, ("rgb",)).views["rgb"]
+        picture = self._renderer.render(RenderRequest(target.snapshot, camera, ("rgb",))).views[
+            "rgb"
+        ]
         contents = target.snapshot.contents
         shown = target.drawn.instance
         return Viewpoint(

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.selection import make_backend
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
@@ -92,7 +92,7 @@ def unseen(
     def look(eye: tuple[float, float, float], at: tuple[float, ...], angle_deg: float) -> None:
         lens = CameraIntrinsics(width=_LOOK_PX[0], height=_LOOK_PX[1], vertical_fov_deg=angle_deg)
         camera = Camera(intrinsics=lens, pose=look_at(eye, at))
-        ids = backend.render(snapshot, None, camera, ("instance",)).views["instance"]
+        ids = backend.render(RenderRequest(snapshot, camera, ("instance",))).views["instance"]
         found, counts = np.unique(ids, return_counts=True)
         seen = found[counts >= LEAST_PIXELS].tolist()
         missing.difference_update(seen, (wholes.get(number, 0) for number in seen))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.authoring.viewpoints import ViewScene, sample_cameras
 from sailenv_ros.authoring.viewpoints.room_view import view_score
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.space import FreeSpace
 from sailenv_ros.space.free_space import BodySize
@@ -55,7 +55,7 @@ class StandingWorld(ViewScene):
 
     def draw(self, camera: Camera, *views: str) -> Mapping[str, NDArray[Any]]:
         """Return these views of the world."""
-        return self._backend.render(self.snapshot, None, camera, views).views
+        return self._backend.render(RenderRequest(self.snapshot, camera, views)).views
 
     def draw_amodal(self, camera: Camera, only: int) -> AmodalMasks:
         """Return each object drawn alone, or only the one of that id."""

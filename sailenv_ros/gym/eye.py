@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.gym.retina import Retina
 from sailenv_ros.gym.room import Room
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.listed_views import Views, listed_views
@@ -123,7 +124,7 @@ class Eye:
         """
         camera = Camera(intrinsics=self.intrinsics, pose=pose, picture=self.picture)
         wanted = also.union(self.views)
-        made = room.renderer.render(scene, past, camera, wanted)
+        made = room.renderer.render(RenderRequest(scene, camera, wanted, past))
         return Look(made.views, Observation(snapshot=scene, camera=camera, depth=made.depth))
 
     def write(self, views: Mapping[str, NDArray[Any]], out: Mapping[str, NDArray[Any]]) -> None:

@@ -5,7 +5,7 @@ Imports no graphics library, so that every renderer and the simulation can share
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol, TypeAlias, get_args
 
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.listed_views import Views
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import AdaptedExposure, Observation, SceneContents, WorldSnapshot
 
@@ -30,7 +31,7 @@ BACKEND_NAMES: tuple[BackendName, ...] = get_args(BackendName)
 """Names of back ends that can be requested."""
 
 
-@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class RenderRequest:
     """Everything that is asked of a renderer for one frame.
 
@@ -39,7 +40,7 @@ class RenderRequest:
     snapshot : WorldSnapshot
         The world now.
     camera : Camera
-    views : tuple of str
+    views : str or iterable of str
         Names in `frame.VIEWS`.
     previous : Observation or None
         What the same camera saw before, which flow and automatic exposure refer to; None if there
@@ -52,7 +53,7 @@ class RenderRequest:
 
     snapshot: WorldSnapshot
     camera: Camera
-    views: tuple[str, ...]
+    views: Views
     previous: Observation | None = None
     rows: RowPoses | None = None
     samples: Sequence[Observation] = ()
@@ -60,7 +61,7 @@ class RenderRequest:
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class RenderedViews:
-    """Result of one call of `RenderBackend.render`.
+    """Result of one `RenderRequest`.
 
     Attributes
     ----------
@@ -102,22 +103,8 @@ class RenderBackend(Protocol):
         Any thread may call it while no other one uses the renderer.
         """
 
-    def render(
-        self,
-        snapshot: WorldSnapshot,
-        previous: Observation | None,
-        camera: Camera,
-        views: Iterable[str],
-        *,
-        rows: RowPoses | None = None,
-        samples: Sequence[Observation] = (),
-    ) -> RenderedViews:
+    def render(self, request: RenderRequest) -> RenderedViews:
         """Make the wanted views of one camera.
-
-        Parameters
-        ----------
-        snapshot, previous, camera, views, rows, samples
-            As in `RenderRequest`.
 
         Raises
         ------

@@ -194,7 +194,9 @@ class FrameMaker:
 
     def look(self, camera: Camera, *views: str) -> Mapping[str, NDArray[Any]]:
         """Render views of the scene as it stands now, through a camera that is no agent's."""
-        return self._renderer.render(self._scene.world.snapshot(), None, camera, views).views
+        return self._renderer.render(
+            RenderRequest(self._scene.world.snapshot(), camera, views)
+        ).views
 
     def prepare(self, known: str) -> None:
         """Have the renderer take up the present scene, unless it is the known one.

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
@@ -44,7 +44,7 @@ def render(renderer: RenderBackend) -> Render:
         past: tuple[WorldSnapshot, Camera] | None = None,
     ) -> dict[str, NDArray[Any]]:
         previous = None if past is None else Observation(snapshot=past[0], camera=past[1])
-        return dict(renderer.render(snapshot, previous, camera, views).views)
+        return dict(renderer.render(RenderRequest(snapshot, camera, views, previous)).views)
 
     return call
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.native.library import load_library, using_instruction_set
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
@@ -80,7 +81,7 @@ def test_what_nothing_hides_covers_its_visible_pixels(
     covered = 0
     for row, thing in enumerate(things):
         single = snapshot_of([thing], first_id=row + 1)
-        views = native.render(single, None, camera, ("instance", "depth")).views
+        views = native.render(RenderRequest(single, camera, ("instance", "depth"))).views
         seen = views["instance"] == row + 1
         assert (masks.mask(row + 1) == seen).all()
         depth = np.where(seen, views["depth"], np.float32(np.inf))
@@ -107,7 +108,9 @@ def test_the_canvas_is_a_picture_of_three_times_the_size(
     beside = 0
     for row, thing in enumerate(things):
         single = snapshot_of([thing], first_id=row + 1)
-        seen = native.render(single, None, wide, ("instance",)).views["instance"] == row + 1
+        seen = (
+            native.render(RenderRequest(single, wide, ("instance",))).views["instance"] == row + 1
+        )
         # Rounding of another picture's numbers may decide a pixel on an edge otherwise.
         assert abs(int(seen.sum()) - int(masks.whole_pixels[row])) <= 2
         if seen.sum() > 20:
@@ -123,7 +126,7 @@ def test_visible_shares_are_those_of_rays(native: NativeRenderer, alone: AmodalR
     camera = camera_at(width=80, height=60)
     things = crowd(10)
     snapshot = snapshot_of(things)
-    seen = native.render(snapshot, None, camera, ("instance",)).views["instance"]
+    seen = native.render(RenderRequest(snapshot, camera, ("instance",))).views["instance"]
     masks = alone.draw(snapshot, camera)
     hits = cast(snapshot, camera)
     for row, thing in enumerate(things):
@@ -144,7 +147,9 @@ def test_what_is_seen_through_a_hole_belongs_to_what_lies_behind(
     wall = Thing(model_of(wall_mesh(20.0, 20.0)), Pose((5.0, 0.0, 0.0)))
     camera = camera_at(width=81, height=61)
     masks = alone.draw(snapshot_of([ring, wall]), camera)
-    seen = native.render(snapshot_of([ring, wall]), None, camera, ("instance",)).views["instance"]
+    seen = native.render(RenderRequest(snapshot_of([ring, wall]), camera, ("instance",))).views[
+        "instance"
+    ]
     assert not masks.mask(1)[30, 40]
     assert seen[30, 40] == 2
     assert (masks.mask(1) == (seen == 1)).all()
@@ -186,7 +191,7 @@ def test_holes_of_a_masked_material_are_holes(
     leaf = model_of(wall_mesh(2.0, 2.0), base_colour_texture=skin, alpha="mask")
     snapshot = snapshot_of([Thing(leaf, Pose((3.0, 0.0, 0.0)))])
     camera = camera_at()
-    seen = native.render(snapshot, None, camera, ("instance",)).views["instance"] == 1
+    seen = native.render(RenderRequest(snapshot, camera, ("instance",))).views["instance"] == 1
     mask = alone.draw(snapshot, camera).mask(1)
     assert (mask == seen).all()
     assert 0 < mask.sum() < 0.8 * (cast(snapshot, camera).row == 0).sum()
@@ -211,7 +216,7 @@ def test_clip_distances_are_those_of_the_views(
     masks = alone.draw(snapshot_of([near, slanted]), camera)
     assert masks.pixels[0] > 0
     assert np.isnan(masks.depth(1)[masks.mask(1)]).all()
-    seen = native.render(snapshot_of([slanted], first_id=2), None, camera, ("instance",))
+    seen = native.render(RenderRequest(snapshot_of([slanted], first_id=2), camera, ("instance",)))
     assert (masks.mask(2) == (seen.views["instance"] == 2)).all()
     assert 0 < masks.pixels[1] < 96 * 72
 
@@ -223,7 +228,9 @@ def test_an_object_of_one_pixel(native: NativeRenderer, alone: AmodalRenderer) -
     masks = alone.draw(snapshot_of([disc]), camera)
     assert masks.pixels[0] == masks.whole_pixels[0] == 1
     assert masks.boxes[0].tolist() == [16, 16, 16, 16]
-    seen = native.render(snapshot_of([disc]), None, camera, ("instance",)).views["instance"]
+    seen = native.render(RenderRequest(snapshot_of([disc]), camera, ("instance",))).views[
+        "instance"
+    ]
     assert np.argwhere(seen == 1).tolist() == [[16, 16]]
 
 
@@ -255,7 +262,7 @@ def test_an_empty_scene_has_no_masks(alone: AmodalRenderer) -> None:
 def test_points_of_a_cloud_lie_on_the_meshes(native: NativeRenderer) -> None:
     """Within a tenth of a millimetre, by the distance to the nearest side of each box."""
     snapshot, camera = snapshot_of(crowd()), camera_at(width=160, height=120)
-    views = native.render(snapshot, None, camera, ("depth", "instance")).views
+    views = native.render(RenderRequest(snapshot, camera, ("depth", "instance"))).views
     frame = small_frame(dict(views), camera=camera)
     cloud = frame.points()
     assert len(cloud) > 1000

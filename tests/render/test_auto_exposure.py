@@ -12,7 +12,7 @@ import pytest
 
 from sailenv_ros import Simulation
 from sailenv_ros.frame.frame import Frame
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.picture.auto_exposure import HIGHLIGHT, MAX_STOPS
 from sailenv_ros.types.bayer import BLACK_LEVEL, WHITE_LEVEL
 from sailenv_ros.types.camera import Camera
@@ -56,12 +56,12 @@ def test_the_first_picture_is_of_middle_grey(
     renderer: RenderBackend, colour: tuple[float, ...]
 ) -> None:
     """Whatever light there is, up to eight stops; RAW data and picture are of that exposure."""
-    made = renderer.render(plain(*colour), None, eye(), ("rgb", "raw"))
+    made = renderer.render(RenderRequest(plain(*colour), eye(), ("rgb", "raw")))
     luminance = float(np.dot(WEIGHTS, colour * 3 if len(colour) == 1 else colour))
     assert made.adapted is not None
     assert made.adapted.stops == pytest.approx(wanted(luminance), abs=1e-9)
     by_hand = replace(AUTOMATIC, auto_exposure_s=0.0, exposure=made.adapted.stops)
-    fixed = renderer.render(plain(*colour), None, eye(by_hand), ("rgb", "raw"))
+    fixed = renderer.render(RenderRequest(plain(*colour), eye(by_hand), ("rgb", "raw")))
     assert fixed.adapted is None
     for view in ("rgb", "raw"):
         np.testing.assert_array_equal(made.views[view], fixed.views[view])
@@ -85,7 +85,7 @@ def test_the_meter_takes_the_mean_of_logarithms(renderer: RenderBackend) -> None
     """Half of the picture 64 times as bright: three stops, not six."""
     halves = [shining(16.0, 1.0), shining(0.25, -1.0)]
     camera = eye(replace(AUTOMATIC, occlusion_strength=0.0))
-    made = renderer.render(dark(*halves), None, camera, ("rgb",))
+    made = renderer.render(RenderRequest(dark(*halves), camera, ("rgb",)))
     assert made.adapted is not None
     mean = 0.5 * (math.log2(0.25 + 1e-4) + math.log2(16.0 + 1e-4))
     # The column in the middle may be of either.
@@ -96,11 +96,11 @@ def test_highlights_are_protected_and_the_sky_does_not_count(renderer: RenderBac
     """Half 1,024 times as bright would be white; a sky in its place changes nothing."""
     camera = eye(replace(AUTOMATIC, occlusion_strength=0.0))
     halves = [shining(16.0, 1.0), shining(2.0**-6, -1.0)]
-    made = renderer.render(dark(*halves), None, camera, ("rgb",))
+    made = renderer.render(RenderRequest(dark(*halves), camera, ("rgb",)))
     assert made.adapted is not None
     assert made.adapted.stops == pytest.approx(math.log2(HIGHLIGHT / (16.0 + 1e-4)), abs=1e-3)
     sky = replace(BLACK, background_colour=(16.0, 16.0, 16.0))
-    made = renderer.render(dark(shining(0.25, 1.0), sky=sky), None, camera, ("rgb",))
+    made = renderer.render(RenderRequest(dark(shining(0.25, 1.0), sky=sky), camera, ("rgb",)))
     assert made.adapted is not None
     assert made.adapted.stops == pytest.approx(wanted(0.25), abs=0.2)
 
@@ -111,18 +111,18 @@ def test_the_way_there_is_exponential(renderer: RenderBackend) -> None:
     past = Observation(snapshot=plain(0.5, at_ns=1_000_000_000), camera=eye(), adapted=before)
     now = plain(0.5, at_ns=1_200_000_000)
     brighter = eye(replace(AUTOMATIC, exposure=1.0))
-    made = renderer.render(now, past, brighter, ("raw",))
+    made = renderer.render(RenderRequest(now, brighter, ("raw",), past))
     assert made.adapted is not None
     stops = wanted(0.5) + (3.0 - wanted(0.5)) * math.exp(-0.2 / 0.5)
     assert made.adapted.stops == pytest.approx(stops, abs=1e-9)
     expected = BLACK_LEVEL + SPAN * min(0.5 * 2.0 ** (stops + 1.0), 1.0)
     assert np.abs(made.views["raw"] - expected).max() <= 0.5
-    no_picture = renderer.render(now, past, eye(), ("depth",))
+    no_picture = renderer.render(RenderRequest(now, eye(), ("depth",), past))
     assert no_picture.adapted == before
     off = eye(replace(AUTOMATIC, auto_exposure_s=0.0))
-    assert renderer.render(now, past, off, ("depth",)).adapted is None
+    assert renderer.render(RenderRequest(now, off, ("depth",), past)).adapted is None
     dark = eye(replace(AUTOMATIC, exposure=15.0))
-    assert renderer.render(plain(0.0), None, dark, ("raw",)).adapted == (MAX_STOPS, 0)
+    assert renderer.render(RenderRequest(plain(0.0), dark, ("raw",))).adapted == (MAX_STOPS, 0)
 
 
 @pytest.fixture

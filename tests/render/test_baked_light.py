@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight, SunEdges
 from sailenv_ros.types.geometry import Pose
@@ -238,7 +239,8 @@ def test_a_change_of_lights_leaves_nothing_behind() -> None:
         scene = snapshot_of(things, lights=lights, environment=DARK, baked=light)
         fresh = NativeRenderer(threads=1)
         pictures = [
-            made.render(scene, None, camera_at(), ["rgb"]).views["rgb"] for made in (kept, fresh)
+            made.render(RenderRequest(scene, camera_at(), ["rgb"])).views["rgb"]
+            for made in (kept, fresh)
         ]
         fresh.close()
         np.testing.assert_array_equal(*pictures)

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from sailenv_ros.errors import ContextError, InvalidRequest, RenderError
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.gl import context as contexts
 from sailenv_ros.render.gl.context import DeviceReport, create_context, is_software, probe_devices
 from sailenv_ros.render.gl.renderer import Renderer
@@ -88,7 +88,7 @@ def test_a_closed_renderer_says_so(make_renderer: Callable[[], RenderBackend]) -
     made.close()
     made.close()
     with pytest.raises(RenderError, match="closed"):
-        made.render(snapshot_of([]), None, camera_at(), ["depth"])
+        made.render(RenderRequest(snapshot_of([]), camera_at(), ["depth"]))
 
 
 def test_two_renderers_in_two_threads(
@@ -102,7 +102,7 @@ def test_two_renderers_in_two_threads(
     def work() -> None:
         made = make_renderer()
         for _ in range(20):
-            seen.append(made.render(scene, None, camera, ["rgb"]).views["rgb"].tobytes())
+            seen.append(made.render(RenderRequest(scene, camera, ["rgb"])).views["rgb"].tobytes())
         made.close()
 
     threads = [threading.Thread(target=work) for _ in range(2)]
@@ -117,6 +117,7 @@ def test_two_renderers_in_two_threads(
 WORK = """
 import json, sys
 from hashlib import sha256
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.snapshot import Observation
@@ -127,7 +128,7 @@ for make in (NativeRenderer, Renderer):
     made = make()
     past = Observation(snapshot=before, camera=then)
     views = ["rgb", "depth", "category", "instance", "flow", "flow_valid", "occlusion"]
-    rendered = made.render(after, past, now, views).views
+    rendered = made.render(RenderRequest(after, now, views, past)).views
     for name in views:
         digests[f"{make.__name__} {name}"] = sha256(rendered[name].tobytes()).hexdigest()
     made.close()
@@ -145,6 +146,7 @@ def test_two_processes_agree_to_the_byte() -> None:
 MEASURE = """
 import gc
 import numpy as np
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
 from tests.support.tiny_scenes import *
@@ -168,7 +170,7 @@ RENDERERS = """
 before, after, then, now = two_instants()
 def pass_by():
     made = %s()
-    made.render(after, None, now, ["rgb", "depth", "instance", "normals"])
+    made.render(RenderRequest(after, now, ["rgb", "depth", "instance", "normals"]))
     made.close()
 """
 
@@ -179,7 +181,8 @@ def pass_by():
     vertices = (np.tile(getattr(mesh, name), (5000, 1)) for name in ("positions", "normals", "uvs"))
     many = mesh_of(*vertices, mesh.triangles)
     model = model_of(many, base_colour_texture=np.full((1024, 1024, 4), 99, np.uint8))
-    made.render(snapshot_of([Thing(model, Pose((3.0, 0.0, 0.0)))]), None, camera_at(), ["rgb"])
+    scene = snapshot_of([Thing(model, Pose((3.0, 0.0, 0.0)))])
+    made.render(RenderRequest(scene, camera_at(), ["rgb"]))
 """
 
 

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import Pose
 from tests.render.conftest import Render
@@ -289,6 +290,6 @@ def test_occlusion_does_not_depend_on_what_was_asked_before(renderer, render: Re
     depth = render(before, camera, "depth")["depth"]
     kept = Observation(snapshot=before, camera=camera, depth=depth)
     again = Observation(snapshot=before, camera=camera)
-    first = renderer.render(after, kept, camera, ["occlusion"]).views["occlusion"]
-    second = renderer.render(after, again, camera, ["occlusion"]).views["occlusion"]
+    first = renderer.render(RenderRequest(after, camera, ["occlusion"], kept)).views["occlusion"]
+    second = renderer.render(RenderRequest(after, camera, ["occlusion"], again)).views["occlusion"]
     np.testing.assert_array_equal(first, second)

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.frame.lens_rays import depth_shares, rays_of_half_pixels, unit_rays
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.scene.opening_window import OpeningWindows
@@ -241,7 +242,9 @@ def test_flow_is_what_arithmetic_says(native: NativeRenderer, name: str, motion:
     then = camera_through(name, CAMERA_PATHS["still"])
     now = replace(then, pose=CAMERA_PATHS.get(motion, then.pose))
     past = Observation(snapshot=before, camera=then)
-    views = dict(native.render(after, past, now, ("flow", "flow_valid", "occlusion")).views)
+    views = dict(
+        native.render(RenderRequest(after, now, ("flow", "flow_valid", "occlusion"), past)).views
+    )
     hits = cast(after, now)
     expected = flow_by_arithmetic(hits, after, now, before, then)
     away = hits.away_from_edges() & np.isfinite(unit_rays(now.intrinsics)[..., 2])

@@ -68,7 +68,7 @@ def bytes_of(renderer: NativeRenderer, width: int, height: int) -> dict[str, byt
     scene, camera = gallery(), camera_at(width=width, height=height)
     past = Observation(snapshot=scene, camera=camera_at(Pose((0.1, 0.02, 0.0))))
     past = replace(past, camera=replace(past.camera, intrinsics=camera.intrinsics))
-    views = renderer.render(scene, past, camera, VIEWS).views
+    views = renderer.render(RenderRequest(scene, camera, VIEWS, past)).views
     return {name: views[name].tobytes() for name in VIEWS}
 
 
@@ -82,7 +82,7 @@ def test_what_was_forgotten_is_freed_and_looks_the_same_again(native: NativeRend
         [Thing(model, Pose((2.0, 0.0, 0.0)))],
         environment=Environment(sky=sky, sky_map="grey", sky_blend=False),
     )
-    native.render(scene, None, camera_at(), ("rgb",))
+    native.render(RenderRequest(scene, camera_at(), ("rgb",)))
     assert (sky, None) in _texels_in_use
     del model, scene
     native.forget()
@@ -122,7 +122,7 @@ def draw_net(renderer: NativeRenderer) -> None:
     )
     sun = Light(name="sun", type="directional", intensity=2.0)
     scene = snapshot_of([Thing(model_of(net), Pose((2.0, 0.0, -0.5)))], lights=(sun,))
-    renderer.render(scene, None, camera_at(), ("rgb",))
+    renderer.render(RenderRequest(scene, camera_at(), ("rgb",)))
 
 
 def _bytes_in_use() -> int:
@@ -170,7 +170,7 @@ def test_cameras_side_by_side_see_what_each_sees_alone(threads: int) -> None:
             Observation(
                 snapshot=scene,
                 camera=camera,
-                depth=alone.render(scene, None, camera, ("occlusion",)).depth,
+                depth=alone.render(RenderRequest(scene, camera, ("occlusion",))).depth,
             )
             for camera in moved
         ]
@@ -180,7 +180,9 @@ def test_cameras_side_by_side_see_what_each_sees_alone(threads: int) -> None:
         ]
         made = together.render_all(requests)
         for rendered, request in zip(made, requests, strict=True):
-            expected = alone.render(scene, request.previous, request.camera, request.views)
+            expected = alone.render(
+                RenderRequest(scene, request.camera, request.views, request.previous)
+            )
             assert rendered.views.keys() == expected.views.keys() == set(request.views)
             for view, array in expected.views.items():
                 assert rendered.views[view].tobytes() == array.tobytes(), view
@@ -250,7 +252,7 @@ def test_closed_surfaces_have_no_hole(native: NativeRenderer) -> None:
         eye = centre + reach * away / np.linalg.norm(away)
         towards = centre + 0.3 * random.normal(size=3)
         camera = Camera(intrinsics=intrinsics, pose=look_at(tuple(eye), tuple(towards)))
-        seen = native.render(ball, None, camera, ["instance"]).views["instance"] > 0
+        seen = native.render(RenderRequest(ball, camera, ["instance"])).views["instance"] > 0
         if inside:
             assert seen.all(), number
             continue
@@ -279,7 +281,7 @@ def test_labels_and_depth_are_those_of_rays(native: NativeRenderer, seed: int) -
     ]
     snapshot, camera = snapshot_of(things), camera_at(width=320, height=240)
     hits = cast(snapshot, camera)
-    views = native.render(snapshot, None, camera, ["instance", "depth"]).views
+    views = native.render(RenderRequest(snapshot, camera, ["instance", "depth"])).views
     sure = hits.away_from_edges()
     ids = np.concatenate([snapshot.contents.instance_ids, [0]])
     np.testing.assert_array_equal(views["instance"][sure], ids[hits.row[sure]])
@@ -340,7 +342,7 @@ def test_pictures_are_those_of_opengl(
     snapshot = snapshot_of(things, contents=contents)
     camera = camera_at(look_at((0, 0, 0.6), (3.2, 0, -0.2)), width=200, height=150)
     first, second = (
-        made.render(snapshot, None, camera, ["rgb", "instance"]).views for made in pair
+        made.render(RenderRequest(snapshot, camera, ["rgb", "instance"])).views for made in pair
     )
     same = first["instance"] == second["instance"]
     assert (~same).mean() <= 2e-4
@@ -363,7 +365,7 @@ def test_a_cone_without_width_ends_at_once(native: NativeRenderer) -> None:
     dark = snapshot_of([Thing(model_of(wall_mesh(6, 6)), Pose((3.0, 0, 0)))], lights=())
     camera = camera_at(width=97, height=73)
     lit, unlit = (
-        native.render(snapshot, None, camera, ["rgb"]).views["rgb"].astype(int)
+        native.render(RenderRequest(snapshot, camera, ["rgb"])).views["rgb"].astype(int)
         for snapshot in (scene, dark)
     )
     assert (lit - unlit)[36, 48].min() > 20
@@ -379,7 +381,8 @@ def test_textures_are_as_bright_as_those_of_opengl(pair: tuple[NativeRenderer, R
     snapshot = snapshot_of(things, contents=contents)
     camera = camera_at(width=200, height=150)
     first, second = (
-        made.render(snapshot, None, camera, ["rgb"]).views["rgb"].astype(int) for made in pair
+        made.render(RenderRequest(snapshot, camera, ["rgb"])).views["rgb"].astype(int)
+        for made in pair
     )
     assert abs((first - second).mean()) < 0.1
     assert (np.abs(first - second).max(axis=-1) <= 2).mean() > 0.98
@@ -402,7 +405,7 @@ def test_hostile_scenes_are_drawn_as_far_as_they_can_be(
     """Nothing crashes, and what comes back are views."""
     camera = camera_at(width=size[0], height=size[1])
     with np.errstate(all="ignore"):
-        views = native.render(hostile_scenes()[name](), None, camera, VIEWS).views
+        views = native.render(RenderRequest(hostile_scenes()[name](), camera, VIEWS)).views
     assert views["rgb"].shape == (size[1], size[0], 3)
     assert set(np.unique(views["instance"])) <= {0, 1}
 
@@ -412,6 +415,6 @@ def test_the_largest_picture(native: NativeRenderer) -> None:
     scene = gallery()
     large = camera_at(width=4096, height=4096)
     small = camera_at(width=64, height=64)
-    big = native.render(scene, None, large, ["instance"]).views["instance"]
-    little = native.render(scene, None, small, ["instance"]).views["instance"]
+    big = native.render(RenderRequest(scene, large, ["instance"])).views["instance"]
+    little = native.render(RenderRequest(scene, small, ["instance"])).views["instance"]
     assert (big[32::64, 32::64] == little).mean() > 0.95

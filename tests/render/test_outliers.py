@@ -7,6 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.light_faults import bright_spots, dashes, outliers
@@ -67,7 +68,7 @@ def test_no_pixel_stands_out_alone(name: str) -> None:
         views = plausible_views(room, renderer, name, width=480, height=360)
         for number, camera in enumerate(itertools.islice(views, VIEWS)):
             wanted = ("rgb", "instance", "normals")
-            seen = renderer.render(room, None, camera, wanted).views
+            seen = renderer.render(RenderRequest(room, camera, wanted)).views
             upwards = seen["normals"] @ camera.world_from_camera[2, :3] > 0.9
             sills = np.isin(seen["instance"], windows)
             plain = np.isin(seen["instance"], structure)

@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.assets.outside.kinds.street import HOUSES_M
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
@@ -121,7 +122,7 @@ def test_it_is_bright_by_day_and_follows_the_exposure(
 
 def test_both_renderers_show_the_same(street: WorldSnapshot, render: Render) -> None:
     native = NativeRenderer()
-    ours = native.render(street, None, north(), ("rgb", "instance", "depth")).views
+    ours = native.render(RenderRequest(street, north(), ("rgb", "instance", "depth"))).views
     native.close()
     theirs = render(street, north(), "rgb", "instance", "depth")
     same = ours["instance"] == theirs["instance"]
@@ -142,7 +143,7 @@ def test_drawing_it_through_openings_alone_changes_no_pixel(
     names = ("rgb", "depth", "instance", "normals")
     rng = np.random.default_rng(5)
     cut, whole = NativeRenderer(), NativeRenderer()
-    monkeypatch.setattr(whole._openings, "of", lambda *_: None)
+    monkeypatch.setattr(whole._drawing._openings, "of", lambda *_: None)
     narrower = 0
     for _ in range(10):
         eye = tuple(rng.uniform((-2.0, -1.6, 0.3), (2.0, 1.7, 2.4)))
@@ -154,11 +155,11 @@ def test_drawing_it_through_openings_alone_changes_no_pixel(
             pose=look_at(eye, target),
         )
         camera = replace(camera, picture=replace(camera.picture, smooth_edges=smooth))
-        found = cut._openings.of(street, camera)
+        found = cut._drawing._openings.of(street, camera)
         assert found is not None
         narrower += found[1] != (0, 0, 159, 119)
-        one = cut.render(street, None, camera, names).views
-        other = whole.render(street, None, camera, names).views
+        one = cut.render(RenderRequest(street, camera, names)).views
+        other = whole.render(RenderRequest(street, camera, names)).views
         for name in names:
             np.testing.assert_array_equal(one[name], other[name])
     assert narrower >= 8
@@ -169,7 +170,7 @@ def test_drawing_it_through_openings_alone_changes_no_pixel(
 def test_a_room_that_is_open_shows_it_everywhere(street: WorldSnapshot) -> None:
     """Without a ceiling, from outside, and where a wall has been taken away."""
     renderer = NativeRenderer()
-    openings = renderer._openings
+    openings = renderer._drawing._openings
     assert openings.of(street, north()) is not None
     assert openings.of(street, north((0.0, 6.0, 1.0))) is None
     assert openings.of(snapshot_of("street", ceiling=False), north()) is None

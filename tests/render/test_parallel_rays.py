@@ -20,6 +20,7 @@ from sailenv_ros.frame.motion.between import motion
 from sailenv_ros.frame.motion.tracks import ObjectPoints, track
 from sailenv_ros.native.library import load_library, using_instruction_set
 from sailenv_ros.rays.scene_geometry import SceneGeometry
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
@@ -154,7 +155,9 @@ def test_flow_is_what_arithmetic_says(native: NativeRenderer, kind: str) -> None
     then = camera_at(CAMERA_PATHS["still"])
     now = replace(then, pose=CAMERA_PATHS.get(kind, then.pose))
     past = Observation(snapshot=before, camera=then)
-    views = dict(native.render(after, past, now, ("flow", "flow_valid", "occlusion")).views)
+    views = dict(
+        native.render(RenderRequest(after, now, ("flow", "flow_valid", "occlusion"), past)).views
+    )
     hits = cast(after, now)
     expected = flow_by_arithmetic(hits, after, now, before, then)
     away = hits.away_from_edges()
@@ -269,7 +272,7 @@ def test_opengl_leaves_them_to_the_native_renderer(native: NativeRenderer) -> No
     camera = camera_at(Pose((-0.5, 0.0, 0.0)), 60.0)
     views = ("rgb", "depth", "instance", "normals", "albedo")
     renderer = Renderer()
-    made = dict(renderer.render(scene, None, camera, views).views)
+    made = dict(renderer.render(RenderRequest(scene, camera, views)).views)
     renderer.close()
     for view, values in seen(native, scene, camera, *views).items():
         np.testing.assert_array_equal(made[view], values, err_msg=view)
@@ -286,7 +289,9 @@ def test_bytes_do_not_depend_on_threads_or_the_instruction_set() -> None:
         for threads in (1, 3):
             with using_instruction_set(name):
                 renderer = NativeRenderer(threads=threads)
-                views = renderer.render(scene, past, now, renderer.supported_views).views
+                views = renderer.render(
+                    RenderRequest(scene, now, renderer.supported_views, past)
+                ).views
                 renderer.close()
             assert len(np.unique(views["instance"])) > 3
             for view, values in views.items():

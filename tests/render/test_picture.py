@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.types.geometry import Pose, look_at
@@ -114,7 +114,7 @@ def test_shadows_follow_what_creeps(
         velocities = np.zeros((2, 2, 3))
         velocities[1, 0, 1] = 0.02
         snapshot = replace(snapshot_of(there, contents=contents), velocities=velocities)
-        return by.render(snapshot, None, camera, ["rgb"]).views["rgb"].astype(np.int16)
+        return by.render(RenderRequest(snapshot, camera, ["rgb"])).views["rgb"].astype(np.int16)
 
     first = picture(renderer, 0.0)
     for step in range(1, 430):
@@ -150,7 +150,7 @@ def test_shadows_of_what_comes_to_rest_stay(
         for row, end in enumerate(ends, start=1):
             velocities[row, 0, 0] = 0.5 if step < end else 0.0
         snapshot = replace(snapshot_of(there, contents=contents), velocities=velocities)
-        return by.render(snapshot, None, camera, ["rgb"]).views["rgb"]
+        return by.render(RenderRequest(snapshot, camera, ["rgb"])).views["rgb"]
 
     for step in range(45):
         last = picture(renderer, step)
@@ -253,7 +253,10 @@ def test_two_renderers_agree_to_the_byte(
     other = make_renderer()
     scene, camera = gallery(), camera_at(width=160, height=120)
     views = ("rgb", "depth", "category", "instance", "normals")
-    first, second = render(scene, camera, *views), other.render(scene, None, camera, views).views
+    first, second = (
+        render(scene, camera, *views),
+        other.render(RenderRequest(scene, camera, views)).views,
+    )
     for name in views:
         assert first[name].tobytes() == second[name].tobytes(), name
     other.close()
@@ -266,17 +269,17 @@ def test_contexts_come_and_go(render: Render) -> None:
     expected = render(scene, camera, "rgb")["rgb"]
     for _ in range(20):
         passing = Renderer()
-        passing.render(scene, None, camera, ["rgb"])
+        passing.render(RenderRequest(scene, camera, ["rgb"]))
         passing.close()
     np.testing.assert_array_equal(render(scene, camera, "rgb")["rgb"], expected)
 
 
 def test_only_what_is_wanted_is_made(renderer: RenderBackend) -> None:
     """Without rgb nothing is lit, and no other view comes back."""
-    rendered = renderer.render(gallery(), None, camera_at(), ["instance"])
+    rendered = renderer.render(RenderRequest(gallery(), camera_at(), ["instance"]))
     assert set(rendered.views) == {"instance"}
     assert not {"shadow", "lighting", "post"} & set(rendered.timings_s)
-    lit = renderer.render(gallery(), None, camera_at(), ["rgb"])
+    lit = renderer.render(RenderRequest(gallery(), camera_at(), ["rgb"]))
     assert {"shadow", "post"} <= set(lit.timings_s)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.picture.raw_data import raw_data
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.types.bayer import BLACK_LEVEL, WHITE_LEVEL, mosaic
@@ -128,7 +128,9 @@ def test_light_of_an_exposure_s_instants_is_averaged(renderer: RenderBackend) ->
         Observation(snapshot=plain((level, level, level)), camera=eye()) for level in (0.25, 0.75)
     ]
     for views in (("raw",), ("rgb", "raw")):
-        made = renderer.render(instants[0].snapshot, None, eye(), views, samples=instants).views
+        made = renderer.render(
+            RenderRequest(instants[0].snapshot, eye(), views, samples=instants)
+        ).views
         assert (made["raw"] == np.rint(of_light(np.array(0.5)))).all()
 
 

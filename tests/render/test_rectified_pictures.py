@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from std_msgs.msg import Header
 
 from sailenv_msgs_py.camera_info import camera_info_from_intrinsics
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
@@ -84,9 +85,9 @@ def test_a_rectified_picture_is_that_of_a_pin_hole(name: str) -> None:
     renderer = NativeRenderer()
     bent, straight = (
         np.asarray(
-            renderer.render(scene, None, Camera(intrinsics=each, picture=PICTURE), ("rgb",)).views[
-                "rgb"
-            ]
+            renderer.render(
+                RenderRequest(scene, Camera(intrinsics=each, picture=PICTURE), ("rgb",))
+            ).views["rgb"]
         )
         for each in (lens, flat)
     )

@@ -19,6 +19,7 @@ from scipy.spatial.transform import Rotation
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion.between import motion
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
@@ -138,7 +139,7 @@ def seen(
 ) -> dict[str, NDArray[Any]]:
     """Views of an observation."""
     rendered = renderer.render(
-        now.snapshot, past, now.camera, views, rows=now.rows, samples=samples
+        RenderRequest(now.snapshot, now.camera, views, past, rows=now.rows, samples=samples)
     )
     return dict(rendered.views)
 

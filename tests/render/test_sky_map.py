@@ -17,7 +17,7 @@ from sailenv_ros.assets.kept_skies import kept_sky
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.assets.skies import load_sky, sky_files
 from sailenv_ros.errors import AssetError, UnknownName
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.scene.seen_sky import FINER, seen_sky
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.colour import linear_from_srgb
@@ -66,7 +66,7 @@ def test_each_quarter_is_where_it_belongs(name: str, world: World, renderer: Ren
         intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=60.0),
         pose=look_at((0, 0, 0), TOWARDS[name]),
     )
-    rendered = renderer.render(world.snapshot(), None, camera, ("rgb", "instance"))
+    rendered = renderer.render(RenderRequest(world.snapshot(), camera, ("rgb", "instance")))
     middle = rendered.views["rgb"][12:21, 12:21].reshape(-1, 3).mean(axis=0)
     bright = tuple(int(channel > 150) for channel in middle)
     assert bright == COLOURS[name]
@@ -87,7 +87,7 @@ def test_a_sky_is_blended_unless_its_radiance_is_wanted(
     try:
         for blend in (True, False):
             world.set_environment(Environment(sky=bright, sky_map="painted", sky_blend=blend))
-            rendered = renderer.render(world.snapshot(), None, towards_east, ("rgb",))
+            rendered = renderer.render(RenderRequest(world.snapshot(), towards_east, ("rgb",)))
             seen[blend] = int(rendered.views["rgb"][16, 16].min())
     finally:
         world.set_environment(before)
@@ -111,7 +111,7 @@ def test_a_sky_is_seen_with_a_factor(world: World, renderer: RenderBackend, blen
             world.set_environment(
                 Environment(sky=grey, sky_map="painted", sky_blend=blend, outside_factor=factor)
             )
-            rendered = renderer.render(world.snapshot(), None, camera, ("rgb",))
+            rendered = renderer.render(RenderRequest(world.snapshot(), camera, ("rgb",)))
             light[factor] = float(linear_from_srgb(rendered.views["rgb"][16, 16, 0] / 255.0))
     finally:
         world.set_environment(before)
@@ -125,7 +125,7 @@ def test_above_is_the_first_row(world: World, renderer: RenderBackend) -> None:
         intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=30.0),
         pose=look_at((0, 0, 0), (0.01, 0, 1)),
     )
-    rendered = renderer.render(world.snapshot(), None, camera, ("rgb",))
+    rendered = renderer.render(RenderRequest(world.snapshot(), camera, ("rgb",)))
     assert rendered.views["rgb"].max() < 5
 
 
@@ -228,6 +228,6 @@ def test_a_bright_sky_is_not_white(world: World, renderer: RenderBackend) -> Non
         intrinsics=CameraIntrinsics(width=33, height=33, vertical_fov_deg=60.0),
         pose=look_at((0, 0, 0), (1.0, 0.0, 0.0)),
     )
-    shown = renderer.render(replace(snapshot, contents=contents), None, camera, ("rgb",))
+    shown = renderer.render(RenderRequest(replace(snapshot, contents=contents), camera, ("rgb",)))
     assert shown.views["rgb"].min() > 150
     assert shown.views["rgb"].max() < 240

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.types.geometry import Pose
@@ -36,7 +36,7 @@ def test_views_that_are_declared_are_drawn(backends: dict[str, RenderBackend]) -
     """All at once, each as its entry says, and the box is in every one of them."""
     for backend in backends.values():
         camera = camera_at()
-        drawn = backend.render(SCENE, None, camera, backend.supported_views).views
+        drawn = backend.render(RenderRequest(SCENE, camera, backend.supported_views)).views
         assert tuple(view for view in VIEWS if view in drawn) == backend.supported_views
         for view, values in drawn.items():
             spec = VIEWS[view]
@@ -56,9 +56,9 @@ def test_views_that_are_not_declared_are_refused(backends: dict[str, RenderBacke
             late = VIEWS[view].needs_next
             why = "known with the next one" if late else "that this renderer makes: rgb, depth"
             with pytest.raises(InvalidRequest, match=why):
-                backend.render(SCENE, None, camera_at(), ["depth", view])
+                backend.render(RenderRequest(SCENE, camera_at(), ["depth", view]))
         with pytest.raises(UnknownName, match="view must be one of: rgb, depth"):
-            backend.render(SCENE, None, camera_at(), ["heat"])
+            backend.render(RenderRequest(SCENE, camera_at(), ["heat"]))
 
 
 def test_every_renderer_makes_every_view(backends: dict[str, RenderBackend]) -> None:

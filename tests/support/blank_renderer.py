@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from sailenv_ros.render.contract import RenderedViews, RenderRequest
 from sailenv_ros.types.camera import Camera
-from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, checked_views
 
@@ -33,25 +32,17 @@ class BlankRenderer:
     def preload(self, contents: SceneContents) -> None:
         self.preloaded.append(contents)
 
-    def render(
-        self,
-        snapshot: WorldSnapshot,
-        previous: Observation | None,
-        camera: Camera,
-        views: Iterable[str],
-        *,
-        rows: RowPoses | None = None,
-        samples: Sequence[Observation] = (),
-    ) -> RenderedViews:
-        wanted = checked_views(views)
-        self.calls.append((snapshot, previous, camera, wanted))
+    def render(self, request: RenderRequest) -> RenderedViews:
+        wanted = checked_views(request.views)
+        camera = request.camera
+        self.calls.append((request.snapshot, request.previous, camera, wanted))
         height, width = camera.intrinsics.height, camera.intrinsics.width
         arrays = {v: np.zeros(VIEWS[v].shape(height, width), VIEWS[v].dtype) for v in wanted}
         return RenderedViews(views=arrays, depth=arrays.get("depth"), timings_s={})
 
     def render_all(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
         self.together.append(tuple(request.camera.name for request in requests))
-        return [self.render(r.snapshot, r.previous, r.camera, r.views) for r in requests]
+        return [self.render(request) for request in requests]
 
     def close(self) -> None:
         self.closed = True

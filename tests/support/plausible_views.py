@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
@@ -60,7 +60,7 @@ def plausible_views(
             continue
         pose = look_at(eye, target)
         camera = Camera(intrinsics=small, pose=pose)
-        seen = renderer.render(snapshot, None, camera, ("depth", "instance")).views
+        seen = renderer.render(RenderRequest(snapshot, camera, ("depth", "instance"))).views
         _, counts = np.unique(seen["instance"], return_counts=True)
         if seen["depth"].min() < NEAREST_M or counts.max() > LARGEST_SHARE * seen["depth"].size:
             continue

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.render.contract import RenderBackend
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.snapshot import WorldSnapshot
@@ -73,4 +73,4 @@ def seen(
     renderer: RenderBackend, scene: WorldSnapshot, camera: Camera, *views: str
 ) -> dict[str, NDArray[Any]]:
     """Views without a past."""
-    return dict(renderer.render(scene, None, camera, views).views)
+    return dict(renderer.render(RenderRequest(scene, camera, views)).views)

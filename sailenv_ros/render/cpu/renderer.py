@@ -25,7 +25,7 @@ from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import Share
 from sailenv_ros.render.scene.seen_sky import seen_exposure, seen_sky
 from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
-from sailenv_ros.types.views import LIT_VIEWS, checked_views, views_of
+from sailenv_ros.types.views import LIT_VIEWS, views_of
 
 __all__ = ["NativeRenderer"]
 
@@ -109,9 +109,8 @@ class NativeRenderer(DrawingRenderer):
 
     def render_all(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
         """Make the views of several cameras, side by side where they are of one instant."""
-        for request in requests:
-            checked_views(request.views, supported=self.supported_views)
-        if self._closed or len(requests) < 2 or not _of_one_instant(requests):
+        requests = [self._checked(request) for request in requests]
+        if len(requests) < 2 or not _of_one_instant(requests):
             return super().render_all(requests)
         timings: Timings = {}
         lit = not all(LIT_VIEWS.isdisjoint(request.views) for request in requests)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -16,7 +15,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.render.contract import RenderedViews
+from sailenv_ros.render.contract import RenderedViews, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.context import create_context
 from sailenv_ros.render.gl.draw_list import DrawList
@@ -34,7 +33,6 @@ from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, SeenMirror, Window
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
-from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
 
@@ -98,26 +96,18 @@ class Renderer(DrawingRenderer):
         made = {*views_of("lighting", "annotation", "measurement"), *self._outputs}
         return tuple(view for view in VIEWS if view in made)
 
-    def render(
-        self,
-        snapshot: WorldSnapshot,
-        previous: Observation | None,
-        camera: Camera,
-        views: Iterable[str],
-        *,
-        rows: RowPoses | None = None,
-        samples: Sequence[Observation] = (),
-    ) -> RenderedViews:
+    def render(self, request: RenderRequest) -> RenderedViews:
         """Make the wanted views.
 
         Through lenses that bend straight lines and rolling shutters by the native renderer.
         """
-        is_global = rows is None and (previous is None or previous.rows is None)
-        if (camera.intrinsics.is_pinhole and is_global) or self._closed:
-            return super().render(snapshot, previous, camera, views, samples=samples)
+        past = request.previous
+        is_global = request.rows is None and (past is None or past.rows is None)
+        if (request.camera.intrinsics.is_pinhole and is_global) or self._closed:
+            return super().render(request)
         if self._native is None:
             self._native = NativeRenderer(threads=self._threads)
-        return self._native.render(snapshot, previous, camera, views, rows=rows, samples=samples)
+        return self._native.render(request)
 
     def _drawing_context(self) -> moderngl.Context:
         return self._context

@@ -8,7 +8,8 @@ from __future__ import annotations
 import contextlib
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -22,8 +23,6 @@ from sailenv_ros.render.picture.annotate import annotate, with_depth
 from sailenv_ros.render.picture.auto_exposure import with_exposure
 from sailenv_ros.render.picture.measured_depth import MEASURED_FROM, measured_depth
 from sailenv_ros.render.picture.post_pass import Light, PostPass
-from sailenv_ros.types.camera import Camera
-from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
 from sailenv_ros.types.views import LIT_VIEWS, VIEWS, checked_views
 
@@ -60,42 +59,23 @@ class DrawingRenderer(ABC):
     def preload(self, contents: SceneContents) -> None:  # noqa: B027  # a context is its thread's
         """Make ready what a first picture needs; see `RenderBackend.preload`. Here nothing."""
 
-    def render(
-        self,
-        snapshot: WorldSnapshot,
-        previous: Observation | None,
-        camera: Camera,
-        views: Iterable[str],
-        *,
-        rows: RowPoses | None = None,
-        samples: Sequence[Observation] = (),
-    ) -> RenderedViews:
+    def render(self, request: RenderRequest) -> RenderedViews:
         """Make the wanted views of one camera; see `RenderBackend.render`."""
-        request = RenderRequest(
-            snapshot=snapshot,
-            previous=previous,
-            camera=camera,
-            views=checked_views(views, supported=self.supported_views),
-            rows=rows,
-            samples=samples,
-        )
-        return self._finished(request, self._draw, self._threads)
+        return self._finished(self._checked(request), self._draw, self._threads)
 
     def render_all(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
         """Make the views of several cameras, one after another; see `RenderBackend.render_all`."""
-        return [
-            self.render(
-                *(asked.snapshot, asked.previous, asked.camera, asked.views),
-                rows=asked.rows,
-                samples=asked.samples,
-            )
-            for asked in requests
-        ]
+        checked = [self._checked(request) for request in requests]
+        return [self.render(request) for request in checked]
+
+    def _checked(self, request: RenderRequest) -> RenderRequest:
+        """Return a request whose views are a tuple of those that can be made."""
+        if self._closed:
+            raise RenderError("the renderer was closed")
+        return replace(request, views=checked_views(request.views, supported=self.supported_views))
 
     def _finished(self, request: RenderRequest, draw: Draw, threads: int) -> RenderedViews:
         """Draw and finish what one request asks for, whose views were checked."""
-        if self._closed:
-            raise RenderError("the renderer was closed")
         snapshot, camera, previous = request.snapshot, request.camera, request.previous
         rows, samples = request.rows, request.samples
         post = PostPass(threads)

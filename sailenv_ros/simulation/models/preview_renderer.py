@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sailenv_ros.assets.categories import load_categories
 from sailenv_ros.assets.paint import painted
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.render.contract import BackendName
+from sailenv_ros.render.contract import BackendName, RenderRequest
 from sailenv_ros.render.selection import make_backend
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose, look_at
@@ -100,7 +100,7 @@ class PreviewRenderer:
             target = (low + high) / 2.0 * scale
             target[2] -= low[2] * scale
             camera = self._camera(target, width, height, azimuth_deg, elevation_deg)
-            rendered = self._backend.render(world.snapshot(), None, camera, ("rgb",))
+            rendered = self._backend.render(RenderRequest(world.snapshot(), camera, ("rgb",)))
         finally:
             world.close()
         return np.asarray(rendered.views["rgb"])

@@ -52,6 +52,7 @@ from sailenv_ros.native.self_test import run_self_test
 from sailenv_ros.native.texel_kernels import cover_texels
 from sailenv_ros.native.view_kernels import annotate_pixels, convert_views, measure_instances
 from sailenv_ros.rays.triangle_tree import in_leaves, triangle_tree
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.picture.ambient_occlusion import PATTERN
@@ -273,17 +274,19 @@ def drive_drawing() -> None:
                         seen = replace(camera, intrinsics=lens)
                         past = Observation(snapshot=snapshot, camera=seen)
                         with np.errstate(all="ignore"):
-                            renderer.render(snapshot, past, seen, ("rgb", "flow", "normals"))
+                            renderer.render(
+                                RenderRequest(snapshot, seen, ("rgb", "flow", "normals"), past)
+                            )
                             if width > 8 and (lens is not camera.intrinsics or times > 1):
                                 continue
                             rows = _wild_rows(snapshot, seen)
                             past = replace(past, rows=rows)
                             views = ("rgb", "flow", "occlusion")
-                            renderer.render(snapshot, past, seen, views, rows=rows)
+                            renderer.render(RenderRequest(snapshot, seen, views, past, rows=rows))
         renderer.close()
     renderer = NativeRenderer(threads=2)
     scene = snapshot_of([Thing(model_of(box_mesh(1.0), alpha="blend"), Pose((0.0, 0.0, 0.0)))])
-    renderer.render(scene, None, camera_at(width=4096, height=4096), ("instance",))
+    renderer.render(RenderRequest(scene, camera_at(width=4096, height=4096), ("instance",)))
     renderer.close()
 
 

@@ -16,6 +16,7 @@ from sailenv_ros.errors import InvalidRequest, InvalidState, NameTaken, SailenvE
 from sailenv_ros.frame.frame import Frame
 from sailenv_ros.frame.motion import motion
 from sailenv_ros.frame.stereo import disparity
+from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec, stereo_baseline_m
@@ -109,7 +110,7 @@ def test_a_camera_of_a_rig_sees_what_any_agent_there_sees(core: SynchronousSimul
     frames = core.capture_rig(agent="rig")
     renderer = NativeRenderer()
     for frame in frames.values():
-        alone = renderer.render(core.world.snapshot(), None, frame.camera, VIEWS).views
+        alone = renderer.render(RenderRequest(core.world.snapshot(), frame.camera, VIEWS)).views
         for view in VIEWS:
             assert frame[view].tobytes() == alone[view].tobytes()
     renderer.close()
