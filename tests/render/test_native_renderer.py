@@ -156,13 +156,26 @@ def test_bytes_do_not_depend_on_threads(size: tuple[int, int]) -> None:
 def test_cameras_side_by_side_see_what_each_sees_alone(threads: int) -> None:
     scene = gallery()
     settings = PictureSettings(supersampling=2)
+    sensor = PictureSettings(
+        auto_exposure_s=0.5,
+        bloom=0.1,
+        full_well=9000.0,
+        read_noise=4.0,
+        depth_sensor="realsense_d435",
+        vignetting=0.4,
+        lateral_colour=0.002,
+        dirt=0.3,
+        jpeg_quality=60,
+    )
     cameras = [
         camera_at(width=160, height=120),
         camera_at(Pose((0.3, 0.1, 0.0)), width=200, height=90),
         replace(camera_at(Pose((0.2, 0.0, 0.1))), intrinsics=FISHEYE),
         replace(camera_at(Pose((0.1, 0.1, 0.1)), width=96, height=80), picture=settings),
+        replace(camera_at(Pose((0.0, 0.1, 0.1)), width=96, height=80), picture=sensor),
     ]
-    asked = ("rgb", "depth"), ("normals", "instance"), VIEWS, VIEWS
+    measured = ("rgb", "raw", "measured_depth", "occlusion")
+    asked = ("rgb", "depth"), ("normals", "instance"), VIEWS, VIEWS, measured
     alone, together = NativeRenderer(threads=1), NativeRenderer(threads=threads)
     try:
         moved = [replace(camera, pose=Pose((0.15, 0.0, 0.02))) for camera in cameras]
