@@ -30,6 +30,7 @@ __all__ = [
     "LightChanges",
     "LightType",
     "SkyMap",
+    "area_sides",
     "lamp_rows",
     "light_named",
 ]
@@ -182,6 +183,19 @@ def lamp_rows(
         row["outer_cosine"] = np.cos(np.radians(light.outer_cone_deg))
         row["exponent"] = light.exponent
     return rows
+
+
+def area_sides(light: Light) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the vectors along an area light's width and height, as long as these are.
+
+    The width is horizontal; of a light that shines straight up or down it lies along y.
+    """
+    forward = np.asarray(light.direction)
+    across = np.array([-forward[1], forward[0], 0.0])
+    if np.linalg.norm(across) < 1e-6:
+        across = np.array([0.0, 1.0, 0.0])
+    across /= np.linalg.norm(across)
+    return across * light.width_m, np.cross(forward, across) * light.height_m
 
 
 class LightAttributes(TypedDict, total=False):

@@ -9,9 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.light_shapes import area_sides
 from sailenv_ros.native.light_kernels import rectangle_form_factors
-from sailenv_ros.types.lights import Light
+from sailenv_ros.types.lights import Light, area_sides
 
 __all__ = ["form_factors", "solid_angles"]
 

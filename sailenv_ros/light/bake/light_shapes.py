@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.render_types import record
-from sailenv_ros.types.lights import Light, lamp_rows
+from sailenv_ros.types.lights import Light, area_sides, lamp_rows
 
-__all__ = ["LAMP_RADIUS_M", "SUN_DISC_RADIUS", "SUN_RADIUS", "area_sides", "light_record"]
+__all__ = ["LAMP_RADIUS_M", "SUN_DISC_RADIUS", "SUN_RADIUS", "light_record"]
 
 SUN_RADIUS = math.tan(math.radians(0.4))
 """Radius of a directional light's disc at distance 1, for texels: their shadow edges are as
@@ -38,16 +38,3 @@ def light_record(light: Light, sun_radius: float = SUN_RADIUS) -> NDArray[np.voi
     else:
         row["radius"] = sun_radius if light.type == "directional" else LAMP_RADIUS_M
     return row
-
-
-def area_sides(light: Light) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the vectors along an area light's width and height, as long as these are.
-
-    The width is horizontal; of a light that shines straight up or down it lies along y.
-    """
-    forward = np.asarray(light.direction)
-    across = np.array([-forward[1], forward[0], 0.0])
-    if np.linalg.norm(across) < 1e-6:
-        across = np.array([0.0, 1.0, 0.0])
-    across /= np.linalg.norm(across)
-    return across * light.width_m, np.cross(forward, across) * light.height_m
