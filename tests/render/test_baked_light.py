@@ -282,3 +282,54 @@ def test_metal_mirrors_what_lies_where_it_looks(render: Render, turn_deg: float,
     got = linear(render(scene, camera, "rgb")["rgb"])[height // 2, width // 2]
     assert got[seen] > 0.3
     assert got[2 - seen] < 0.25 * got[seen]
+
+
+@pytest.mark.parametrize(("where", "expected"), [("before", 0.5), ("hidden", 0.0), ("large", 0.0)])
+def test_polished_metal_mirrors_an_area_light(render: Render, where: str, expected: float) -> None:
+    """With the radiance that the light has; not behind a screen, nor in what is large."""
+    panel = Light(
+        name="panel", type="area", position_m=(-4.0, 0.0, 0.0), direction=(1.0, 0.0, 0.0),
+        width_m=3.0, height_m=3.0, intensity=0.5,
+    )  # fmt: skip
+    size = 8.0 if where == "large" else 0.4
+    metal = model_of(
+        box_mesh((0.3, size, size)), base_colour=(1, 1, 1, 1), metallic=1.0, roughness=0.0
+    )
+    # Screens have no back: the eye looks through it.
+    screen = model_of(wall_mesh(9.0, 9.0), base_colour=(0.5, 0.5, 0.5, 1.0), roughness=1.0)
+    behind = Pose.from_rpy_deg((-3.0, 0.0, 0.0), (0.0, 0.0, 180.0))
+    things = [Thing(metal, Pose((3.5, 0.0, 0.0)))]
+    charts = {}
+    if where == "hidden":
+        things.append(Thing(screen, behind))
+        charts[2] = chart(screen, behind)
+    # So much light is everywhere that all of it is mirrored.
+    light = layer(panel, probe_direct=np.array([[1.0] * 3] + [[0.0] * 3] * 3))
+    scene = snapshot_of(things, lights=(panel,), environment=DARK, baked=baked(charts, [light]))
+    got = linear(render(scene, camera_at(), "rgb")["rgb"])
+    middle = got[got.shape[0] // 2, got.shape[1] // 2]
+    np.testing.assert_allclose(middle, expected, rtol=0.05, atol=0.02)
+
+
+@pytest.mark.parametrize("size", [0.4, 8.0])
+def test_polished_metal_mirrors_a_lamp_that_glows(render: Render, size: float) -> None:
+    """As its shade is seen: glow times colour times intensity, but in what is large."""
+    shade = model_of(
+        box_mesh((0.2, 6.0, 6.0)), base_colour=(0.5, 0.5, 0.5, 1.0), glow=(2.0, 1.0, 4.0)
+    )
+    metal = model_of(
+        box_mesh((0.3, size, size)), base_colour=(1, 1, 1, 1), metallic=1.0, roughness=0.0
+    )
+    lamp = Light(name="lamp", type="point", position_m=(-4.5, 0.0, 0.0), colour=(0.1, 0.2, 0.1))
+    behind = Pose((-4.0, 0.0, 0.0))
+    things = [Thing(metal, Pose((3.5, 0.0, 0.0))), Thing(shade, behind, lit_by=("lamp",))]
+    even = layer(None, probe_bounced=np.array([[0.5] * 3] + [[0.0] * 3] * 3))
+    light = baked({2: chart(shade, behind)}, [layer(lamp)], even)
+    for intensity in (1.0, 2.0, 0.0):
+        lit = (replace(lamp, intensity=intensity),)
+        scene = snapshot_of(things, lights=lit, environment=DARK, baked=light)
+        got = linear(render(scene, camera_at(), "rgb")["rgb"])
+        middle = got[got.shape[0] // 2, got.shape[1] // 2]
+        np.testing.assert_allclose(
+            middle, intensity * np.array([0.2, 0.2, 0.4]), rtol=0.05, atol=0.02
+        )

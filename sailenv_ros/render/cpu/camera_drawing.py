@@ -18,8 +18,10 @@ from sailenv_ros.render.picture.annotate import POINT_VIEWS
 from sailenv_ros.render.picture.finishing import Arrays
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, Window
+from sailenv_ros.render.scene.mirrored_lamps import Seen
 from sailenv_ros.render.scene.opening_window import OpeningWindows
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.lights import Light
 from sailenv_ros.types.row_poses import RowPoses
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
@@ -173,25 +175,25 @@ class CameraDrawing:
         camera: Camera,
         light: NDArray[np.void],
         only: NDArray[np.bool_],
-        glows: bool,
-    ) -> NDArray[np.float32]:
-        """Draw linear radiance of some instances, without glass, as an array (H, W, 3)."""
-        parts = self._table.unlit
-        if not glows:
-            parts = parts.copy()
-            parts["emission"] = 0.0
+        alone: Light | None,
+        lit: bool,
+    ) -> Seen:
+        """Draw linear radiance and depth of some instances, without glass; see `Radiance`."""
         poses = np.ascontiguousarray(snapshot.world_from_body)
         at_baked_pose = self._table.at_baked_pose(snapshot)
-        radiance = np.empty((camera.intrinsics.height, camera.intrinsics.width, 4), np.float16)
+        size = camera.intrinsics.height, camera.intrinsics.width
+        radiance = np.empty((*size, 4), np.float16)
+        surface = np.empty((*size, 2), np.float32)
         self.kernels.picture(
             native_view(camera),
             self._table.instances(poses, at_baked_pose, only),
-            parts,
+            self._table.glowing_by(alone, lit=lit),
             _NO_GLASS,
             light,
             radiance=radiance,
+            surface=surface,
         )
-        return radiance[..., :3].astype(np.float32)
+        return Seen(radiance[..., :3].astype(np.float32), surface[..., 0].copy())
 
 
 def _drawn_poses(rows: RowPoses, snapshot: WorldSnapshot) -> DrawnPoses:

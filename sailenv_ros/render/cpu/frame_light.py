@@ -31,6 +31,7 @@ from sailenv_ros.render.scene.lightmap_compositing import (
     light_alone,
     main_light,
 )
+from sailenv_ros.render.scene.mirrored_lamps import Seen
 from sailenv_ros.render.scene.outside_light import shown_outside
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import RoomReflections, Share
@@ -45,10 +46,10 @@ __all__ = ["Radiance", "FrameLight", "with_exposure"]
 _log = logging.getLogger(__name__)
 
 Radiance: TypeAlias = Callable[
-    [Camera, NDArray[np.void], NDArray[np.bool_], bool], NDArray[np.float32]
+    [Camera, NDArray[np.void], NDArray[np.bool_], Light | None, bool], Seen
 ]
-"""``radiance(camera, light, only, glows)`` returns (H, W, 3): a picture of some instances; what
-glows does so if it is told to."""
+"""``radiance(camera, light, only, alone, lit)`` returns a picture of some instances; of lamps those
+of the light `alone` glow if they are `lit`. If it is None, what emits of itself does."""
 
 _texels_in_use: WeakValueDictionary[tuple[SkyMap, float | None], NDArray[np.float16]] = (
     WeakValueDictionary()
@@ -191,7 +192,7 @@ class FrameLight:
         _set_baked(light, composited, self._light_map)
         if self._reflected is not composited:
             look = partial(self._look, light, snapshot, main, radiance, still)
-            self._reflections.update(snapshot, still, main, look)
+            self._reflections.update(snapshot, still, main, look, composited.live)
             self._reflected = composited
         self._set_reflections(light)
         self._set_reflection_table(light, snapshot)
@@ -264,8 +265,8 @@ class FrameLight:
         radiance: Radiance,
         still: NDArray[np.bool_],
         alone: Light | None,
-        cameras: list[Camera],
-    ) -> list[NDArray[np.float32]]:
+        views: list[tuple[Camera, bool]],
+    ) -> list[Seen]:
         """Look at what stands still under one light alone; see `room_reflections.Look`."""
         contents = snapshot.contents
         assert contents.baked is not None
@@ -294,7 +295,7 @@ class FrameLight:
         _set_baked(light, composited, light_map)
         instances = self._baked.around(snapshot, composited.probes)
         light["instance_light_at"] = address(instances)
-        return [radiance(camera, light, still, alone is None) for camera in cameras]
+        return [radiance(camera, light, still, alone, lit) for camera, lit in views]
 
 
 def with_exposure(light: NDArray[np.void], factor: float) -> NDArray[np.void]:

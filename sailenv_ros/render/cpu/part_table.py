@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ from sailenv_ros.native.render_types import (
     address,
     record,
 )
+from sailenv_ros.render.cpu.lamp_parts import let_glow
 from sailenv_ros.render.cpu.mesh_store import MeshArrays, MeshStore
 from sailenv_ros.render.cpu.texture_store import TextureStore
 from sailenv_ros.render.scene.drawn_meshes import (
@@ -32,9 +34,10 @@ from sailenv_ros.render.scene.drawn_meshes import (
     owner_of,
     unwrappings,
 )
-from sailenv_ros.render.scene.material_factors import material_factors
+from sailenv_ros.render.scene.material_factors import glow_alone, material_factors
 from sailenv_ros.render.scene.shadow_plan import casts
 from sailenv_ros.types.deformation import MovedMesh
+from sailenv_ros.types.lights import Light
 from sailenv_ros.types.model import Material, Model
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
@@ -141,14 +144,20 @@ class PartTable:
             return
         self.opaque, self.glass = self.opaque.copy(), self.glass.copy()
         for row, model, power in lit:
-            for table, see_through in ((self.opaque, False), (self.glass, True)):
-                parts = [p for p in model.parts if (p.material.alpha == "blend") == see_through]
-                places = np.flatnonzero(table["instance"] == row)
-                for place, part in zip(places, parts, strict=True):
-                    if any(part.material.glow):
-                        factors = material_factors(part.material, power)
-                        table["colour"][place] = factors.colour
-                        table["emission"][place] = factors.emission
+            look = partial(material_factors, lamp_power=power)
+            let_glow(self.opaque, row, model, look)
+            let_glow(self.glass, row, model, look, see_through=True)
+
+    def glowing_by(self, light: Light | None, *, lit: bool) -> NDArray[np.void]:
+        """Return `unlit`, of which but the lamps of a light emit, if it is lit; None: as it is."""
+        if light is None:
+            return self.unlit
+        table = self.unlit.copy()
+        table["emission"] = 0.0
+        for row, drawn in enumerate(() if self.contents is None else self.contents.instances):
+            if lit and light.name in drawn.lit_by:
+                let_glow(table, row, drawn.model, partial(glow_alone, light=light))
+        return table
 
     def _show(self, contents: SceneContents, before: SceneContents | None) -> None:
         same_bake = before is not None and before.baked is contents.baked

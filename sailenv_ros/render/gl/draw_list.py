@@ -16,8 +16,10 @@ from sailenv_ros.native import cluster_kernels
 from sailenv_ros.render.gl.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.gl.materials import BatchKind, MaterialBuffers
 from sailenv_ros.render.scene.drawn_meshes import chart_table, drawn_meshes
+from sailenv_ros.render.scene.material_factors import EMISSION_SCALE, glow_alone
 from sailenv_ros.render.scene.shadow_plan import casts
 from sailenv_ros.types.deformation import MovedMesh
+from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
 __all__ = ["ROWS", "Batch", "DrawList"]
@@ -109,6 +111,7 @@ class DrawList:
         )
         self.contents = contents
         self._instance_rows = np.array([row for _, row, *_ in parts], dtype=np.intp)
+        self._looks = [(row, part.material) for _, row, part, _ in parts]
         self._scales = np.array([drawn.scale for drawn in contents.instances]).reshape(-1, 3)
         self.uniforms = np.zeros((len(parts), ROWS, 4), np.float32)
         for block, (_, row, part, _) in zip(self.uniforms, parts, strict=True):
@@ -116,12 +119,13 @@ class DrawList:
             block[_MATERIAL, 0] = contents.instance_ids[row]
         powers = [drawn.lamp_power(contents.lights) for drawn in contents.instances]
         self._lamps = [
-            (number, self.uniforms[number, _GLOW:_NORMAL].copy(), lit[_GLOW - _MATERIAL :])
+            (number, lit[_GLOW - _MATERIAL :])
             for number, (_, row, part, _) in enumerate(parts)
             if any(powers[row]) and any(part.material.glow)
             for lit in (materials.lit_vectors(part.material, powers[row]),)
         ]
-        self.show_lamps(True)
+        self._unlit = self.uniforms[:, _GLOW:_NORMAL].copy()
+        self.show_lamps()
         slices = [geometry.slice(mesh) for *_, mesh in parts]
         self.lies = [(mesh.first_index, mesh.index_count) for mesh in slices]
         self._ranges = np.array(
@@ -200,10 +204,24 @@ class DrawList:
             self._geometry.move(drawn, moved)
             self._corners[number] = _corners(moved.positions)
 
-    def show_lamps(self, lit: bool) -> None:
-        """Let the lamps that are on glow, or not."""
-        for part, off, on in self._lamps:
-            self.uniforms[part, _GLOW:_NORMAL] = on if lit else off
+    def show_lamps(self) -> None:
+        """Let the lamps that are on glow."""
+        self.uniforms[:, _GLOW:_NORMAL] = self._unlit
+        for part, on in self._lamps:
+            self.uniforms[part, _GLOW:_NORMAL] = on
+
+    def glow_by(self, light: Light | None, *, lit: bool) -> None:
+        """Let the lamps of one light alone emit if it is lit; None: what does of itself."""
+        self.uniforms[:, _GLOW:_NORMAL] = self._unlit
+        if light is None:
+            return
+        self.uniforms[:, _NORMAL - 1, 3] = 0.0
+        for number, (row, material) in enumerate(self._looks):
+            names = self.contents.instances[row].lit_by
+            if lit and any(material.glow) and light.name in names:
+                factors = glow_alone(material, light)
+                self.uniforms[number, _GLOW] = factors.colour
+                self.uniforms[number, _NORMAL - 1, 3] = factors.emission / EMISSION_SCALE
 
     def seen_indices(
         self, by_corner: Callable[[BatchKind], bool]

@@ -62,8 +62,6 @@ class Illumination:
     main_transmittance : float
         Share of the main light that glass lets through to what is not in the light map.
     reflections : ReflectionTexture or None
-    glows : bool
-        Whether what emits light does so.
     blended : bool
         Whether the sky is blended with the room, as for people to see; see `seen_sky`.
     outside : (int, float)
@@ -79,7 +77,6 @@ class Illumination:
     main_baked: bool = False
     main_transmittance: float = 1.0
     reflections: ReflectionTexture | None = None
-    glows: bool = True
     blended: bool = True
     outside: tuple[int, float] = NOTHING_OUTSIDE
 
@@ -180,7 +177,6 @@ class LightingPass:
         rows = lamp_rows(strongest_lamps(lamps), camera.camera_from_world)
         self._lamps.write(rows.tobytes())
         self._lamps.bind_to_uniform_block(0)
-        set_uniform(program, "glow", float(illumination.glows))
         outside_id, outside_radiance = illumination.outside
         set_uniform(program, "outside_id", float(outside_id))
         set_uniform(program, "outside_radiance", outside_radiance)

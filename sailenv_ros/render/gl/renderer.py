@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import itertools
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 
@@ -32,6 +34,7 @@ from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timing
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, SeenMirror, Window
+from sailenv_ros.render.scene.mirrored_lamps import Seen
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.snapshot import Observation, WorldSnapshot
 from sailenv_ros.types.views import VIEWS, views_of
@@ -250,7 +253,8 @@ class Renderer(DrawingRenderer):
             return samples[closer_window(window)]
 
         def look(behind: Camera, only: NDArray[np.bool_], window: Window) -> NDArray[np.float16]:
-            return self._exposed(snapshot, behind, illumination, only)[window]
+            with self._lit(snapshot, behind, illumination, only) as lit:
+                return self._read_lit(lit, behind, smoothed=_is_smoothed(behind))[window]
 
         surface = arrays["samples" if "samples" in arrays else "surface"]
         reflect(mirrors, camera, arrays["rgb"], surface, look, None if samples is None else closer)
@@ -261,20 +265,24 @@ class Renderer(DrawingRenderer):
         camera: Camera,
         illumination: Illumination,
         only: NDArray[np.bool_],
-    ) -> NDArray[np.float32]:
-        """Draw linear radiance of some instances, as an array (H, W, 3)."""
+    ) -> Seen:
+        """Draw linear radiance and depth of some instances."""
         unexposed = replace(illumination.environment, exposure=0.0)
         light = replace(illumination, environment=unexposed)
-        return self._exposed(snapshot, camera, light, only)[..., :3].astype(np.float32)
+        with self._lit(snapshot, camera, light, only) as lit:
+            picture = self._read_lit(lit, camera, smoothed=_is_smoothed(camera))
+            surface = self._pictures.read_surface(lit)
+        return Seen(picture[..., :3].astype(np.float32), surface[..., 0].copy())
 
-    def _exposed(
+    @contextmanager
+    def _lit(
         self,
         snapshot: WorldSnapshot,
         camera: Camera,
         illumination: Illumination,
         only: NDArray[np.bool_],
-    ) -> NDArray[np.float16]:
-        """Draw what some instances send out, without glass, as an array (H, W, 4)."""
+    ) -> Iterator[Targets]:
+        """Draw what some instances send out, without glass; lit while the context lasts."""
         seen = _of_samples(camera)
         half_pixels = _is_smoothed(camera)
         draws, intrinsics = self._draws_of(snapshot), seen.intrinsics
@@ -295,7 +303,7 @@ class Renderer(DrawingRenderer):
                 half_pixels=half_pixels,
             )
             self._lighting_pass.draw(targets, seen, illumination)
-            return self._read_lit(targets, camera, smoothed=half_pixels)
+            yield targets
         finally:
             targets.close()
 

@@ -7,7 +7,7 @@ once, and only what moves is drawn again.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from functools import partial
 
@@ -31,6 +31,7 @@ from sailenv_ros.render.scene.lightmap_compositing import (
     main_light,
     sum_texels,
 )
+from sailenv_ros.render.scene.mirrored_lamps import Seen
 from sailenv_ros.render.scene.outside_light import shown_outside
 from sailenv_ros.render.scene.room_reflections import RoomReflections
 from sailenv_ros.types.camera import Camera
@@ -39,8 +40,8 @@ from sailenv_ros.types.snapshot import WorldSnapshot
 
 __all__ = ["Radiance", "SceneLight"]
 
-Radiance = Callable[[Camera, Illumination, NDArray[np.bool_]], NDArray[np.float32]]
-"""``radiance(camera, illumination, only)`` gives (H, W, 3): a picture of some instances."""
+Radiance = Callable[[Camera, Illumination, NDArray[np.bool_]], Seen]
+"""``radiance(camera, illumination, only)`` gives a picture of some instances."""
 
 
 class SceneLight:
@@ -82,10 +83,8 @@ class SceneLight:
             # Nothing that moves casts a shadow into what is mirrored.
             nothing = np.zeros_like(still)
             static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still, nothing)
-            # What is mirrored is kept for each light apart, and none is the lamps' glow.
-            draws.show_lamps(False)
-            self._reflect(snapshot, main, static_shadow, radiance, still)
-            draws.show_lamps(True)
+            self._reflect(snapshot, main, static_shadow, draws, radiance, still, composited.live)
+            draws.show_lamps()
             self._reflected = composited
         static_shadow = self._draw_two_maps(main, snapshot, draws, geometry, still, ~still)
         self._reflections.write_table(self._room.points.table(snapshot))
@@ -129,14 +128,18 @@ class SceneLight:
         snapshot: WorldSnapshot,
         main: Light | None,
         static_shadow: ShadowPass,
+        draws: DrawList,
         radiance: Radiance,
         still: NDArray[np.bool_],
+        live: Collection[Light],
     ) -> None:
         """Bring the reflection maps up to date."""
         alone_textures = BakedTextures(self._context)
-        look = partial(self._look, alone_textures, snapshot, main, static_shadow, radiance, still)
+        look = partial(
+            self._look, alone_textures, snapshot, main, static_shadow, draws, radiance, still
+        )
         try:
-            self._room.update(snapshot, still, main, look)
+            self._room.update(snapshot, still, main, look, live)
         finally:
             alone_textures.close()
         points = self._room.points
@@ -148,11 +151,12 @@ class SceneLight:
         snapshot: WorldSnapshot,
         main: Light | None,
         static_shadow: ShadowPass,
+        draws: DrawList,
         radiance: Radiance,
         still: NDArray[np.bool_],
         alone: Light | None,
-        cameras: list[Camera],
-    ) -> list[NDArray[np.float32]]:
+        views: list[tuple[Camera, bool]],
+    ) -> list[Seen]:
         """Look at what stands still under one light alone; see `room_reflections.Look`."""
         contents = snapshot.contents
         assert contents.baked is not None
@@ -175,7 +179,10 @@ class SceneLight:
             baked=textures,
             main_baked=composited.main_baked,
             main_transmittance=composited.main_transmittance,
-            glows=alone is None,
             blended=False,
         )
-        return [radiance(camera, illumination, still) for camera in cameras]
+        seen = []
+        for camera, lit in views:
+            draws.glow_by(alone, lit=lit)
+            seen.append(radiance(camera, illumination, still))
+        return seen

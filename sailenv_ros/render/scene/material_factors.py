@@ -5,15 +5,16 @@ Knows no graphics library: every back end shades with the same numbers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sailenv_ros.render.scene.coverage import cutoff_by_level
 from sailenv_ros.render.scene.texture_images import SIZES_PX, array_of
+from sailenv_ros.types.lights import Light
 from sailenv_ros.types.model import Material
 
-__all__ = ["EMISSION_SCALE", "MaterialFactors", "material_factors"]
+__all__ = ["EMISSION_SCALE", "MaterialFactors", "glow_alone", "material_factors"]
 
 EMISSION_SCALE = 16.0
 """Radiance, in units of the base colour, that the G-buffer's 8 bits can hold."""
@@ -84,3 +85,8 @@ def material_factors(
         cutoff_fall=fall,
         least_cutoff=least,
     )
+
+
+def glow_alone(material: Material, light: Light) -> MaterialFactors:
+    """Return the numbers of a lamp's material that emits nothing but what it does by one light."""
+    return material_factors(replace(material, emission=(0.0, 0.0, 0.0)), light.power)

@@ -6,9 +6,9 @@ world unwrapped to an octahedron, for several roughnesses one behind the other.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import cv2
 import numpy as np
@@ -23,6 +23,7 @@ from sailenv_ros.types.picture_settings import PictureSettings
 __all__ = [
     "EDGE",
     "Blur",
+    "Glint",
     "ROUGHNESSES",
     "cube_cameras",
     "flattened",
@@ -117,7 +118,24 @@ Blur: TypeAlias = Callable[
 """``blur(radiance, directions, lobe, result)``: averages over a lobe about each direction."""
 
 
-def prefilter(radiance: NDArray[np.float32], *, blur: Blur) -> NDArray[np.float16]:
+class Glint(NamedTuple):
+    """Light from one direction.
+
+    Attributes
+    ----------
+    towards : (3,) float64
+        Unit vector to where it comes from.
+    irradiance : (3,) float64
+        On a surface that faces it.
+    """
+
+    towards: NDArray[np.float64]
+    irradiance: NDArray[np.float64]
+
+
+def prefilter(
+    radiance: NDArray[np.float32], *, blur: Blur, glints: Sequence[Glint] = ()
+) -> NDArray[np.float16]:
     """Blur a map of all directions as rough surfaces would.
 
     Parameters
@@ -125,6 +143,8 @@ def prefilter(radiance: NDArray[np.float32], *, blur: Blur) -> NDArray[np.float1
     radiance : (N, N, 3) float32
     blur : Blur
         Does it for one roughness.
+    glints : sequence of Glint
+        What comes besides from directions alone.
 
     Returns
     -------
@@ -143,6 +163,8 @@ def prefilter(radiance: NDArray[np.float32], *, blur: Blur) -> NDArray[np.float1
         blurred = radiance if roughness == 0.0 else np.empty_like(radiance)
         if roughness > 0.0:
             blur(radiance, directions, _lobe(roughness), blurred)
+        for glint in glints:
+            blurred = blurred + _blurred_glint(glint, directions, roughness)
         layer[1:-1, 1:-1, :3] = np.minimum(blurred, 6e4)
         # Beyond an edge of the square lies the same edge, mirrored about its middle.
         layer[0, 1:-1], layer[-1, 1:-1] = layer[1, -2:0:-1], layer[-2, -2:0:-1]
@@ -207,3 +229,21 @@ def _lobe(roughness: float) -> NDArray[np.float32]:
     light = 2.0 * cosine[:, None] * half - np.array([0.0, 0.0, 1.0])
     weight = np.maximum(light[:, 2], 0.0)
     return np.concatenate([light, weight[:, None]], axis=1).astype(np.float32)
+
+
+def _blurred_glint(
+    glint: Glint, directions: NDArray[np.float32], roughness: float
+) -> NDArray[np.float32]:
+    """Return (N, N, 3): the mean of `_lobe` over light from one direction, by its formula.
+
+    Texels hold no narrower lobe than that of the second layer.
+    """
+    roughness = max(roughness, ROUGHNESSES[1])
+    alpha2 = roughness**4
+    cosine = np.maximum(directions @ glint.towards.astype(np.float32), 0.0)
+    # Halfway between the two directions.
+    spread = 1.0 - 0.5 * (1.0 + cosine) * (1.0 - alpha2)
+    density = alpha2 / (4.0 * np.pi * spread**2)
+    share = density * cosine / _lobe(roughness)[:, 3].mean()
+    found: NDArray[np.float32] = (share[..., None] * glint.irradiance).astype(np.float32)
+    return found

@@ -1,31 +1,43 @@
 """From where a room is looked at for what its shiny surfaces mirror, and who uses which view.
 
 A snapshot comes in, points and the number of the point that each instance uses go out. The first
-point is in the middle of the room, for what is large; the others are before polished metal.
+two points are in the middle of the room: one for what mirrors no lamps, one for what does; the
+others are before polished metal.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.render.scene.baked_state import ROW_IDS
 from sailenv_ros.render.scene.reflection_map import view_point
+from sailenv_ros.types.lights import Light
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot
 
-__all__ = ["MOST", "ReflectionPoints"]
+__all__ = ["LAMPLESS", "MIDDLE", "MOST", "ReflectionPoints"]
 
-MOST = 6
-"""Points in a room. Each costs six small pictures for each light when a room is shown first."""
+LAMPLESS, MIDDLE = 0, 1
+"""Numbers of the points in the middle."""
+
+MOST = 7
+"""Points in a room. All places cost six small pictures for each light when a room is shown first.
+"""
 
 APART_M = 0.5
 """Polished metal nearer than this to a point needs none of its own."""
 
 LARGE_M = 3.0
-"""Instances of this diagonal, such as walls, use the point in the middle."""
+"""Instances of this diagonal, such as walls, mirror no lamps.
+
+Seen from the room's middle a lamp lies elsewhere, and is larger, than from most of their places.
+"""
 
 BEFORE_M = 0.05
 """Distance of the point in front of the box around the metal [m]."""
@@ -51,13 +63,21 @@ class _Spot:
     polished: bool
 
 
+class _Panel(NamedTuple):
+    """Where an area light is, where it shines to, and its diagonal [m]."""
+
+    middle: tuple[float, float, float]
+    direction: tuple[float, float, float]
+    diagonal_m: float
+
+
 class ReflectionPoints:
     """The points of the scene that is shown.
 
     Attributes
     ----------
     points : (K, 3) float64
-        World frame [m], at most `MOST`.
+        World frame [m], at most `MOST`; `LAMPLESS` and `MIDDLE` are one place.
     box : (2, 3) float64
         Lowest and highest corner of the room [m].
     """
@@ -69,8 +89,8 @@ class ReflectionPoints:
         self._sizes = np.zeros(0)
         self._polished = np.zeros(0, np.bool_)
         self._table: NDArray[np.int32] = np.zeros(ROW_IDS, np.int32)
-        self._of: tuple[object, bytes] | None = None
-        self.points = np.zeros((1, 3))
+        self._of: tuple[object, bytes, object] | None = None
+        self.points = np.zeros((2, 3))
         self.box = np.zeros((2, 3))
 
     def choose(self, snapshot: WorldSnapshot) -> None:
@@ -83,9 +103,10 @@ class ReflectionPoints:
         assert contents.baked is not None
         self._show(contents.instances)
         middle, self.box = view_point(contents.baked.probes)
-        found = [middle]
-        mirrors = self._polished & (self._sizes < LARGE_M)
-        at, size = self._world(snapshot)[mirrors], self._sizes[mirrors]
+        found = [middle, middle]
+        at = self._world(snapshot)
+        mirrors = self._polished & ~self._is_lampless(at, _panels(contents.lights))
+        at, size = at[mirrors], self._sizes[mirrors]
         towards = middle - at
         distance = np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-6)
         step = np.minimum(0.5 * size[:, None] + BEFORE_M, distance)
@@ -107,17 +128,20 @@ class ReflectionPoints:
         R is a multiple of `ROW_IDS`. Another array when it has changed.
         """
         contents = snapshot.contents
-        of = (contents.instances, snapshot.world_from_body.tobytes() + self.points.tobytes())
+        panels = _panels(contents.lights)
+        where = snapshot.world_from_body.tobytes() + self.points.tobytes()
+        of = (contents.instances, where, panels)
         if self._of == of:
             return self._table
         self._of = of
         self._show(contents.instances)
-        offsets = self._world(snapshot)[:, None] - self.points
+        at = self._world(snapshot)
+        offsets = at[:, None] - self.points[MIDDLE:]
         squares = np.einsum("nkx,nkx->nk", offsets, offsets)
-        nearest = np.where(squares.min(axis=1) < FAR_M**2, np.argmin(squares, axis=1), 0)
+        nearest = np.where(squares.min(axis=1) < FAR_M**2, np.argmin(squares, axis=1), 0) + MIDDLE
         ids = contents.instance_ids.astype(np.intp)
         table = np.zeros((int(ids.max(initial=0)) // ROW_IDS + 1) * ROW_IDS, np.int32)
-        table[ids] = np.where(self._sizes < LARGE_M, nearest, 0)
+        table[ids] = np.where(self._is_lampless(at, panels), LAMPLESS, nearest)
         if not np.array_equal(table, self._table):
             self._table = table
         return self._table
@@ -151,12 +175,34 @@ class ReflectionPoints:
             points[within, 2] = middle[2] + half[2] + INSIDE_M
         points[:, 2] = np.minimum(points[:, 2], self.box[1, 2] - INSIDE_M)
 
+    def _is_lampless(self, at: NDArray[np.float64], panels: Iterable[_Panel]) -> NDArray[np.bool_]:
+        """Return (N,): which instances, that mirror at places, (N, 3), mirror no lamps.
+
+        Those that are large, and those close behind an area light, where it does not shine, such
+        as curtains: seen from before it they would mirror it.
+        """
+        lampless = self._sizes >= LARGE_M
+        for panel in panels:
+            offsets = at - panel.middle
+            near = np.linalg.norm(offsets, axis=1) < panel.diagonal_m
+            lampless |= near & (offsets @ panel.direction < 0.0)
+        return lampless
+
     def _world(self, snapshot: WorldSnapshot) -> NDArray[np.float64]:
         """Return (N, 3): where each instance mirrors."""
         at: NDArray[np.float64] = np.einsum(
             "nij,nj->ni", snapshot.world_from_body[:, :3], self._middles
         )
         return at
+
+
+def _panels(lights: Iterable[Light]) -> list[_Panel]:
+    """Return the places of area lights."""
+    return [
+        _Panel(light.position_m, light.direction, math.hypot(light.width_m, light.height_m))
+        for light in lights
+        if light.type == "area"
+    ]
 
 
 def _spot(model: Model) -> _Spot:

@@ -8,16 +8,17 @@ go out. Every back end draws with it. Knows no graphics library.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Collection, Hashable, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.render.scene import reflection_map as reflections
 from sailenv_ros.render.scene.lightmap_compositing import Term
-from sailenv_ros.render.scene.reflection_points import ReflectionPoints
+from sailenv_ros.render.scene.mirrored_lamps import Seen, Surroundings, glint_of, radiance_of
+from sailenv_ros.render.scene.reflection_points import LAMPLESS, ReflectionPoints
 from sailenv_ros.render.scene.reflection_store import ReflectionStore, room_key
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.types.camera import Camera
@@ -27,9 +28,9 @@ from sailenv_ros.types.snapshot import WorldSnapshot
 
 __all__ = ["Look", "RoomReflections", "Share", "Sum"]
 
-Look: TypeAlias = Callable[[Light | None, list[Camera]], list[NDArray[np.float32]]]
-"""``look(light, cameras)`` returns (H, W, 3) for each camera: linear radiance under one light
-alone; None: under the sky, with what glows."""
+Look: TypeAlias = Callable[[Light | None, list[tuple[Camera, bool]]], list[Seen]]
+"""``look(light, views)`` returns what cameras see under one light alone, with its lamps glowing if
+the view says so; None: under the sky, with what emits of itself."""
 
 Sum: TypeAlias = Callable[
     [Sequence[Term], NDArray[np.float32], NDArray[np.uint8]], NDArray[np.float16]
@@ -51,6 +52,15 @@ class Share:
 
     texels: NDArray[np.float16]
     around: NDArray[np.float64]
+
+
+class _Wanted(NamedTuple):
+    """A light alone, or None for the sky; whether it is mirrored itself; its power."""
+
+    key: Hashable
+    alone: Light | None
+    is_mirrored: bool
+    power: NDArray[np.float32]
 
 
 class RoomReflections:
@@ -106,6 +116,7 @@ class RoomReflections:
         still: NDArray[np.bool_],
         main: Light | None,
         look: Look,
+        live: Collection[Light] = (),
     ) -> None:
         """Bring the maps up to date, when lights have changed, or what is lit, but for a while.
 
@@ -115,6 +126,8 @@ class RoomReflections:
             Which instances have baked light where they are: only these are mirrored.
         main : Light or None
             The light that casts the shadow map.
+        live : collection of Light
+            Those whose highlights are drawn with each picture: they are not mirrored once more.
         """
         contents = snapshot.contents
         assert contents.baked is not None
@@ -129,9 +142,7 @@ class RoomReflections:
         if self._environment is not contents.environment:
             self._environment = contents.environment
             self._sky = replace(contents.environment, exposure=0.0)
-        wanted: list[tuple[Hashable, Light | None, NDArray[np.float32]]] = [
-            (("sky", self._sky), None, np.ones(3, np.float32))
-        ]
+        wanted = [_Wanted(("sky", self._sky), None, False, np.ones(3, np.float32))]
         alone_of = {}
         for light in contents.lights:
             alone = self._alone_of.get(light)
@@ -140,63 +151,79 @@ class RoomReflections:
             alone_of[light] = alone
             power = np.array(light.power, np.float32)
             if power.any():
-                wanted.append(((alone, light is main), alone, power))
+                mirrored = light is not main and light not in live
+                key = alone, light is main, mirrored
+                wanted.append(_Wanted(key, alone, mirrored, power))
         self._alone_of = alone_of
         shares = {
-            key: self._shares.get(key)
-            or (self._seen(alone, look) if waits else self._share(key, alone, look, snapshot))
-            for key, alone, _ in wanted
+            one.key: self._shares.get(one.key)
+            or (self._seen(one, look) if waits else self._share(one, look, snapshot))
+            for one in wanted
         }
         self._shares = shares
-        terms = [(shares[key].texels, power) for key, _, power in wanted]
+        terms = [(shares[one.key].texels, one.power) for one in wanted]
         shown = np.full(terms[0][0].shape[:2], 255, np.uint8)
         texels = self._sum(terms, np.zeros(3, np.float32), shown)
         self.layers = texels.reshape(-1, *self.layers.shape[1:])
         self.around = sum(
-            (np.einsum("c,kci->ki", power, shares[key].around) for key, _, power in wanted),
+            (np.einsum("c,kci->ki", one.power, shares[one.key].around) for one in wanted),
             np.zeros((len(self.layers), 4)),
         )
 
-    def _share(
-        self, key: Hashable, alone: Light | None, look: Look, snapshot: WorldSnapshot
-    ) -> Share:
+    def _share(self, wanted: _Wanted, look: Look, snapshot: WorldSnapshot) -> Share:
         """Return the share that the store has, or a new one."""
-        known = None if self._store is None else self._store.get((self._room, key))
+        known = None if self._store is None else self._store.get((self._room, wanted.key))
         if known is not None:
             return known
-        made = self._kept(key, alone, look, snapshot)
+        made = self._kept(wanted, look, snapshot)
         if self._store is not None:
-            self._store.put((self._room, key), made, snapshot)
+            self._store.put((self._room, wanted.key), made, snapshot)
         return made
 
-    def _kept(
-        self, key: Hashable, alone: Light | None, look: Look, snapshot: WorldSnapshot
-    ) -> Share:
+    def _kept(self, wanted: _Wanted, look: Look, snapshot: WorldSnapshot) -> Share:
         """Return the share that is on disk, if it can be."""
         contents = snapshot.contents
         assert contents.baked is not None
         if not self._drawn_by or not contents.baked.of_still.checksum:
-            return self._seen(alone, look)
+            return self._seen(wanted, look)
         sky = contents.environment.sky
         told = replace(contents.environment, sky=None, exposure=0.0)
-        lit = (None if sky is None else sky_digest(sky), told) if alone is None else key
+        lit = (
+            (None if sky is None else sky_digest(sky), told) if wanted.alone is None else wanted.key
+        )
         arrays = cached_arrays(
             "reflection",
             [self._drawn_by, self._room, lit],
-            lambda: asdict(self._seen(alone, look)),
+            lambda: asdict(self._seen(wanted, look)),
             code=code_digest("render/cpu", "render/scene", "native", "types"),
         )
         return Share(**arrays)
 
-    def _seen(self, alone: Light | None, look: Look) -> Share:
+    def _seen(self, wanted: _Wanted, look: Look) -> Share:
         every = [reflections.cube_cameras(point) for point in self.points.points]
-        pictures = iter(look(alone, [camera for cameras in every for camera in cameras]))
-        texels, around = [], []
-        for cameras in every:
-            seen = [next(pictures) for _ in cameras]
-            flat = reflections.flattened(cameras, seen, reflections.EDGE)
-            layers = reflections.prefilter(flat, blur=self._blur)[..., :3]
-            first = layers[0, 1:-1, 1:-1].astype(np.float64)
-            around.append([reflections.light_from_around(first * colour) for colour in np.eye(3)])
-            texels.append(layers.reshape(-1, 1, 3))
-        return Share(np.ascontiguousarray(np.concatenate(texels)), np.array(around))
+        views = [(one, number != LAMPLESS) for number, six in enumerate(every) for one in six]
+        pictures = iter(look(wanted.alone, views))
+        maps = []
+        for number, cameras in enumerate(every):
+            around = Surroundings(cameras, [next(pictures) for _ in cameras])
+            mirrored = wanted.is_mirrored and number != LAMPLESS
+            maps.append(self._layers(around, wanted.alone if mirrored else None))
+        texels = np.concatenate([layers.reshape(-1, 1, 3) for layers in maps])
+        return Share(np.ascontiguousarray(texels), np.array([_around(layers) for layers in maps]))
+
+    def _layers(self, around: Surroundings, lamp: Light | None) -> NDArray[np.float16]:
+        """Return (L, N + 2, N + 2, 3): what is mirrored around a point, with a lamp or none."""
+        seen = [picture.radiance for picture in around.pictures]
+        flat = reflections.flattened(around.cameras, seen, reflections.EDGE)
+        glint = None
+        if lamp is not None:
+            flat += radiance_of(lamp, around)
+            glint = glint_of(lamp, around)
+        glints = [] if glint is None else [glint]
+        return reflections.prefilter(flat, blur=self._blur, glints=glints)[..., :3]
+
+
+def _around(layers: NDArray[np.float16]) -> NDArray[np.float64]:
+    """Return (3, 4): what `light_from_around` says of each colour."""
+    first = layers[0, 1:-1, 1:-1].astype(np.float64)
+    return np.array([reflections.light_from_around(first * colour) for colour in np.eye(3)])

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from sailenv_ros.native.light_maps import blur_directions
 from sailenv_ros.render.scene.lightmap_compositing import sum_texels
+from sailenv_ros.render.scene.mirrored_lamps import Seen
 from sailenv_ros.render.scene.reflection_store import MOST_SHARES, ReflectionStore, room_key
 from sailenv_ros.render.scene.room_reflections import RoomReflections, Share
 from sailenv_ros.types.baked_light import BakedLight
@@ -35,6 +35,12 @@ def box(**material: Any) -> Model:
 
 def room(model: Model, light: BakedLight = LIGHT, lights: tuple[Light, ...] = ()) -> WorldSnapshot:
     return snapshot_of([Thing(model, Pose((1.0, 2.0, 0.5)))], lights=lights, baked=light)
+
+
+def everywhere(camera: Camera, value: float) -> Seen:
+    """A picture of one radiance, far away."""
+    size = camera.intrinsics.height, camera.intrinsics.width
+    return Seen(np.full((*size, 3), value, np.float32), np.full(size, np.inf, np.float32))
 
 
 def test_equal_rooms_have_equal_keys() -> None:
@@ -65,13 +71,10 @@ def test_a_room_that_is_shown_again_is_not_looked_at_again() -> None:
     """By another renderer, too; with another light only under that one."""
     looked: list[Light | None] = []
 
-    def look(light: Light | None, cameras: list[Camera]) -> list[NDArray[np.float32]]:
+    def look(light: Light | None, views: list[tuple[Camera, bool]]) -> list[Seen]:
         looked.append(light)
         value = 1.0 if light is None else 2.0
-        return [
-            np.full((one.intrinsics.height, one.intrinsics.width, 3), value, np.float32)
-            for one in cameras
-        ]
+        return [everywhere(one, value) for one, _ in views]
 
     def shown(snapshot: WorldSnapshot, store: ReflectionStore[Share] | None) -> RoomReflections:
         made = RoomReflections(partial(blur_directions, threads=1), sum_texels, store)
@@ -97,11 +100,9 @@ def test_light_that_is_refined_soon_mirrors_what_was_mirrored() -> None:
     """A move's own frame looks at nothing again; the refined one does."""
     looked: list[Light | None] = []
 
-    def look(light: Light | None, cameras: list[Camera]) -> list[NDArray[np.float32]]:
+    def look(light: Light | None, views: list[tuple[Camera, bool]]) -> list[Seen]:
         looked.append(light)
-        return [
-            np.ones((one.intrinsics.height, one.intrinsics.width, 3), np.float32) for one in cameras
-        ]
+        return [everywhere(one, 1.0) for one, _ in views]
 
     shown = RoomReflections(partial(blur_directions, threads=1), sum_texels)
     for number, (rough, expected) in enumerate([(True, 1), (True, 1), (False, 2), (True, 2)]):
@@ -119,12 +120,9 @@ def test_shares_of_light_as_it_was_baked_are_kept_on_disk(
     looked: list[Light | None] = []
     rng = np.random.default_rng(5)
 
-    def look(light: Light | None, cameras: list[Camera]) -> list[NDArray[np.float32]]:
+    def look(light: Light | None, views: list[tuple[Camera, bool]]) -> list[Seen]:
         looked.append(light)
-        return [
-            rng.random((one.intrinsics.height, one.intrinsics.width, 3), np.float32)
-            for one in cameras
-        ]
+        return [everywhere(one, float(rng.random())) for one, _ in views]
 
     def shown(drawn_by: str) -> RoomReflections:
         made = RoomReflections(partial(blur_directions, threads=1), sum_texels, drawn_by=drawn_by)

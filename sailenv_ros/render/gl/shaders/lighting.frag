@@ -16,7 +16,6 @@ uniform vec3 main_colour;          // linear colour times intensity; 0 if there 
 uniform vec3 main_towards;         // optical frame
 uniform mat4 shadow_from_optical;
 uniform vec3 shadow_texel;       // size of a texel [m], its share of the map, penumbra [texels]
-uniform float glow;                // 1 if what emits light does so
 uniform float outside_id;          // of what lies outside the room, which shines as the sky; 0
 uniform float outside_radiance;    // of its white
 #ifdef BAKED
@@ -172,7 +171,7 @@ void main() {
     vec3 again = lost * once * mean / (1.0 - mean * lost);
     vec3 radiance = once * reflected + (again + diffuse * (1.0 - once - again)) * around;
     vec3 from_around = radiance;
-    radiance += base * (a.a * 16.0 * glow);
+    radiance += base * (a.a * 16.0);
     Surface here = Surface(point, normal, view, diffuse, f0, a2, nv);
     radiance += reflected_light(here, main_towards, main_colour * main_arrives);
 #ifdef LAMPS
