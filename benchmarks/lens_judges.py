@@ -35,7 +35,7 @@ WRONG_POSE, FAR_OFF = 10.0, 6.0
 corner that was not well located."""
 MOST_RUNS = 8
 """Of `cv2.omnidir`, each without what the one before showed to be wrong."""
-FISHEYE_DEG = 80.0, 86.0
+FISHEYE_DEG = 70.0, 86.0
 """From the axis to the last corners that `cv2.fisheye` gets: at first, and finally."""
 
 Array: TypeAlias = Any
