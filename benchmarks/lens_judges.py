@@ -9,7 +9,8 @@ focal lengths and axis, and how far the two laws are apart over all pixels: medi
 are compared after the turn that brings them nearest.
 
 Each calibrator begins with the corners as OpenCV finds them, and gets them again as `lens_corners`
-locates them with what it has found itself, in three rounds. Views that it left out stay out.
+locates them with what it has found itself, in three rounds, each until nothing is left that lies
+far off. Views that it left out stay out.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ WRONG_POSE, FAR_OFF = 10.0, 6.0
 """As often the median residual, or more, has a view whose pose is the wrong one of two; and a
 corner that was not well located."""
 MOST_RUNS = 8
-"""Of `cv2.omnidir`, each without what the one before showed to be wrong."""
+"""Of a calibrator, each without what the one before showed to be wrong."""
 FISHEYE_DEG = 70.0, 86.0
 """From the axis to the last corners that `cv2.fisheye` gets: at first, and finally."""
 
@@ -118,46 +119,22 @@ def fisheye_law(matrix: Array, law: Array, rays: Array) -> Array:
 
 
 def omnidir(views: Sequence[View], size: tuple[int, int]) -> Calibrated:
-    """Calibrate by `cv2.omnidir.calibrate`, until all that it was given is right.
-
-    A flat board has two poses of nearly the same picture, and this calibrator's first guess can be
-    the wrong one, which it never leaves. Such views are left out of the next run, and told; so
-    are corners that lie far off, of which this calibrator bears none: one that was located 4 px
-    beside, at the picture's rim, hides others that err less.
-    """
-    kept = np.arange(len(views))
-    corners = [(view.points, view.pixels) for view in views]
-    for left in reversed(range(MOST_RUNS)):
-        rms, matrix, xi, law, turns, shifts, used = CV.omnidir.calibrate(
-            [corners[n][0].reshape(1, -1, 3) for n in kept],
-            [corners[n][1].reshape(1, -1, 2) for n in kept],
-            size,
-            None,
-            None,
-            None,
-            CV.omnidir.CALIB_FIX_SKEW,
-            ACCURATE,
-        )
-        kept, mirror = kept[np.ravel(used)], float(np.ravel(xi)[0])
-        project = partial(mirror_law, matrix, mirror, law.reshape(1, 4))
-        found = list(map(pose_of, turns, shifts))
-        off = [_off(views[n], project, pose) for n, pose in zip(kept, found, strict=True)]
-        median = np.median(np.concatenate(off))
-        right = np.array([np.median(each) < WRONG_POSE * median for each in off])
-        if not right.all():
-            print(f"cv2.omnidir: {(~right).sum()} views left out", file=sys.stderr)
-        before = sum(len(corners[n][0]) for n in kept)
-        for n, each in zip(kept, off, strict=True):
-            near = each < FAR_OFF * median
-            corners[n] = views[n].points[near], views[n].pixels[near]
-        same = right.all() and sum(len(corners[n][0]) for n in kept) == before
-        if same or not left:
-            break
-        kept = kept[right]
+    """Calibrate by `cv2.omnidir.calibrate`."""
+    rms, matrix, xi, law, turns, shifts, used = CV.omnidir.calibrate(
+        [view.points.reshape(1, -1, 3) for view in views],
+        [view.pixels.reshape(1, -1, 2) for view in views],
+        size,
+        None,
+        None,
+        None,
+        CV.omnidir.CALIB_FIX_SKEW,
+        ACCURATE,
+    )
     poses: list[Array | None] = [None] * len(views)
-    for n, pose in zip(kept, found, strict=True):
-        poses[n] = pose
-    return Calibrated(rms, matrix, project, poses)
+    for n, turn, shift in zip(np.ravel(used), turns, shifts, strict=True):
+        poses[n] = pose_of(turn, shift)
+    mirror = float(np.ravel(xi)[0])
+    return Calibrated(rms, matrix, partial(mirror_law, matrix, mirror, law.reshape(1, 4)), poses)
 
 
 def mirror_law(matrix: Array, mirror: float, law: Array, rays: Array) -> Array:
@@ -234,18 +211,50 @@ def colmap(name: str, views: Sequence[View], size: tuple[int, int]) -> Calibrate
     return Calibrated(math.sqrt(np.concatenate(squares).mean()), matrix, law, poses)
 
 
+def without_errors(
+    calibrate: Callable[..., Calibrated], views: list[View], size: tuple[int, int]
+) -> tuple[Calibrated, list[View]]:
+    """Calibrate until all that is given is right; return what that gives, and from which corners.
+
+    A flat board has two poses of nearly the same picture, and a calibrator's first guess can be the
+    wrong one, which it never leaves: such views are left out of the next run, and told. So are
+    corners that lie far off: one that was located 4 px beside, at the picture's rim, hides others
+    that err less.
+    """
+    for left in reversed(range(MOST_RUNS)):
+        found = calibrate(views, size)
+        posed = [
+            (view, pose) for view, pose in zip(views, found.poses, strict=True) if pose is not None
+        ]
+        off = [_off(view, found.project, pose) for view, pose in posed]
+        median = np.nanmedian(np.concatenate(off))
+        right = [np.median(each) < WRONG_POSE * median for each in off]
+        near = [each < FAR_OFF * median for each in off]
+        if all(each.all() for each in near) or not left:
+            break
+        if not all(right):
+            print(f"{right.count(False)} views left out", file=sys.stderr)
+        kept = [
+            View(view.spline, view.points[close], view.pixels[close])
+            for (view, _), close, fits in zip(posed, near, right, strict=True)
+            if fits
+        ]
+        views = enough(kept)
+    return found, views
+
+
 def in_rounds(
     calibrate: Callable[..., Calibrated], views: list[View], size: tuple[int, int]
 ) -> tuple[Calibrated, list[View]]:
     """Return what a calibrator finds finally, and from which corners."""
-    found = calibrate(views, size)
+    found, views = without_errors(calibrate, views, size)
     for _ in range(ROUNDS):
         posed = [
             (view, pose) for view, pose in zip(views, found.poses, strict=True) if pose is not None
         ]
         last = FARTHER * max(angles(view.points, pose).max() for view, pose in posed)
         views = enough([located(view, found.project, pose, last) for view, pose in posed])
-        found = calibrate(views, size)
+        found, views = without_errors(calibrate, views, size)
     return found, views
 
 

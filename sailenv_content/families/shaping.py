@@ -309,7 +309,7 @@ def ribbon(
     rings[..., 0] = line[:, None, 0] + left[:, None, 0] * height
     rings[..., 1] = y
     rings[..., 2] = line[:, None, 1] + left[:, None, 1] * height
-    raw = loft(rings[:, ::-1])
+    raw = loft(rings)
     uvs = np.empty((len(raw.positions), 2))
     uvs[:, 0] = raw.uvs[:, 1] * along[-1] / tile_m
     uvs[:, 1] = raw.positions[:, 1] / tile_m

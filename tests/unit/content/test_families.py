@@ -24,6 +24,7 @@ from sailenv_content.families.source import FamilySource
 from sailenv_ros.assets.arranging import shape_points, support_heights
 from sailenv_ros.assets.asset_library import AssetLibrary
 from sailenv_ros.assets.categories import load_categories
+from sailenv_ros.assets.meshes import RawMesh, components
 from sailenv_ros.errors import AssetError, SceneError, UnknownName
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors
 from sailenv_ros.scene.loader import SceneKnowledge, load_scene
@@ -97,7 +98,7 @@ def test_every_family_has_four_styles_and_categories_of_the_table() -> None:
 
 @pytest.mark.parametrize(("family", "style"), STYLES)
 def test_a_piece_is_whole(family: str, style: str, pieces: dict[tuple[str, str], Piece]) -> None:
-    """Closed meshes with unit normals, of its size, on the floor, of known categories."""
+    """Closed meshes, no piece inside out, unit normals, of its size, of known categories."""
     asset = pieces[family, style].asset
     known = {category.name for category in load_categories().values()}
     assert {part.category for part in asset.parts} | {asset.category} <= known
@@ -107,6 +108,7 @@ def test_a_piece_is_whole(family: str, style: str, pieces: dict[tuple[str, str],
         np.testing.assert_allclose(lengths, 1.0, atol=1e-5)
         assert np.isfinite(mesh.uvs).all()
         assert open_edges(mesh.positions, mesh.triangles) == 0
+        assert least_volume(mesh.positions, mesh.triangles) > -1e-9
     low, high = asset.model.bounds()
     sizes = family_named(family)
     assert ((high - low >= sizes.least_m) & (high - low <= sizes.most_m)).all()
@@ -145,6 +147,15 @@ def open_edges(positions: np.ndarray, triangles: np.ndarray) -> int:
     )
     back = dict(zip(*np.unique(edges[:, 1] * count + edges[:, 0], return_counts=True), strict=True))
     return sum(abs(number - back.get(edge, 0)) for edge, number in there.items())
+
+
+def least_volume(positions: np.ndarray, triangles: np.ndarray) -> float:
+    """Return the least signed volume of connected pieces [m³]: below 0 what is inside out."""
+    places = positions.astype(np.float64)
+    raw = RawMesh(positions=places, uvs=places[:, :2], triangles=triangles.astype(np.int64))
+    corners = places[raw.triangles]
+    volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+    return float(np.bincount(components(raw), volumes).min())
 
 
 def test_what_opens_stands_where_it_is_drawn_in_the_whole(
