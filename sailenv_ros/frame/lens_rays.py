@@ -8,7 +8,6 @@ along the ray, for these may see to the side and behind.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.lens_models import MOST_COEFFICIENTS
 from sailenv_ros.native.motion_kernels import BentLenses
+from sailenv_ros.system.memory import cached_for_scenes
 from sailenv_ros.types.camera import CameraIntrinsics
 
 __all__ = [
@@ -80,7 +80,7 @@ def reach_lines(
     return np.zeros_like(directions), directions
 
 
-@lru_cache(maxsize=8)
+@cached_for_scenes(8)
 def unit_ray_planes(lens: CameraIntrinsics) -> NDArray[np.float64]:
     """Return (3, H, W) float64 read-only: x, y, z of `unit_rays`, as kernels read them."""
     planes = np.ascontiguousarray(np.moveaxis(lens.unit_rays(), -1, 0))
@@ -88,7 +88,7 @@ def unit_ray_planes(lens: CameraIntrinsics) -> NDArray[np.float64]:
     return planes
 
 
-@lru_cache(maxsize=8)
+@cached_for_scenes(8)
 def _single_ray_planes(lens: CameraIntrinsics) -> NDArray[np.float32]:
     """Return `unit_ray_planes` as float32: half the memory to read, off by 3e-8 rad."""
     planes = unit_ray_planes(lens).astype(np.float32)
@@ -104,7 +104,7 @@ def unit_rays(lens: CameraIntrinsics) -> NDArray[np.float64]:
     return np.moveaxis(unit_ray_planes(lens), 0, -1)
 
 
-@lru_cache(maxsize=8)
+@cached_for_scenes(8)
 def ray_lengths(lens: CameraIntrinsics) -> NDArray[np.float64]:
     """Return (H, W) float64 read-only: how long rays are to where they are 1 m deep [m].
 
@@ -149,7 +149,7 @@ def _between(rays: NDArray[np.float64], axis: int) -> tuple[NDArray[np.float64],
     return np.asarray(six), (np.abs(off) <= _LEAST_SURE).all(axis=-1)
 
 
-@lru_cache(maxsize=8)
+@cached_for_scenes(8)
 def depth_shares(lens: CameraIntrinsics) -> NDArray[np.float32]:
     """Return (H, W) float32 read-only: depth along the axis over distance along the ray."""
     shares = unit_rays(lens)[..., 2].astype(np.float32)

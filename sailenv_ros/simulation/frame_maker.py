@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -69,6 +70,7 @@ class FrameMaker:
         self._amodal: AmodalRenderer | None = None
         self._relighter = Relighter(scene.library.baked_scenes)
         self._made = 0
+        self._closed = False
         self.watch_light()
 
     def work_alone(self) -> None:
@@ -237,9 +239,13 @@ class FrameMaker:
             raise InvalidState(
                 "objects of a rolling shutter are not drawn alone; with row_time_us 0 they are"
             )
+        # The renderers are what takes longest to import.
+        from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
+
+        if self._closed:  # whoever keeps a frame may ask later
+            with closing(AmodalRenderer()) as alone:
+                return alone.draw(snapshot, camera, only)
         if self._amodal is None:
-            # The renderers are what takes longest to import.
-            from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
             from sailenv_ros.render.cpu.renderer import NativeRenderer
 
             renderer = self._renderer
@@ -249,6 +255,7 @@ class FrameMaker:
 
     def close(self) -> None:
         """Free the renderer."""
+        self._closed = True
         self._relighter.close()
         if self._amodal is not None:
             self._amodal.close()

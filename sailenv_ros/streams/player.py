@@ -6,6 +6,7 @@ begins the episode again where it is not; what comes out is the same.
 
 from __future__ import annotations
 
+import gc
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -21,7 +22,7 @@ from sailenv_ros.streams.course import Course
 from sailenv_ros.streams.plan import Place, StreamPlan
 from sailenv_ros.streams.staging import Stage
 from sailenv_ros.streams.state import DriftRecord
-from sailenv_ros.system.memory import give_back_freed_memory
+from sailenv_ros.system.memory import forget_scenes, give_back_freed_memory
 from sailenv_ros.types.agents import AgentSpec, due_steps
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.rigid_body import STEPS_PER_SECOND
@@ -74,7 +75,7 @@ class Player:
         truth = tuple(view for view in self._views if VIEWS[view].source not in _LIGHT)
         self._earlier = truth or ("instance",)
         self._due = due_steps(course.rate, course.episode)
-        self._library = SceneLibrary(baked_light=course.baked, drafts=False)
+        self._library: SceneLibrary | None = None
         self._renderer: NativeRenderer | None = None
         self._core: SynchronousSimulation | None = None
         self._stage: Stage | None = None
@@ -107,9 +108,7 @@ class Player:
 
     def close(self) -> None:
         """Free the simulation."""
-        core, self._core, self._at, self._drawn = self._core, None, None, None
-        if core is not None:
-            core.close()
+        self._free()
 
     # -- inside ----------------------------------------------------------------------------
 
@@ -120,11 +119,12 @@ class Player:
         return self._core
 
     def _begin(self, place: Place) -> None:
-        """Begin an episode."""
-        if self._renderer is not None and self._at is not None and self._at.room != place.room:
-            self._renderer.forget()  # two rooms at once would take the most memory of all
-            give_back_freed_memory()
+        """Begin an episode; nothing of the one before is left while its world is built."""
+        if self._at is None or self._at.room != place.room:
+            self._leave_room()
         self._at = self._drawn = None
+        if self._library is None:
+            self._library = SceneLibrary(baked_light=self._course.baked, drafts=False)
         path = self._library.path(place.room)
         seed = self._plan.dice(place.episode, "simulation").whole((0, 2**31 - 1))
         things = self._course.randomise or None
@@ -135,6 +135,7 @@ class Player:
         if not fresh or things is not None:
             for spec in self._core.info.agents:
                 self._core.delete_agent(spec.name)
+            self._core.world.close()  # beside the next one it would take the most memory of all
             chance = RandomisationRequest(things=things)
             self._core.begin(str(path), seed, as_registered=False, chance=chance)
         if self._course.baked:
@@ -156,6 +157,23 @@ class Player:
         self._stage.furnish(state)
         self._at = place
         self._show(place)
+
+    def _leave_room(self) -> None:
+        """Free the simulation and all that it was made of: the next room begins as the first."""
+        if self._core is not None:
+            self._free()
+            self._library = None
+            forget_scenes()
+            gc.collect()  # a world refers to itself
+            give_back_freed_memory()
+
+    def _free(self) -> None:
+        core, renderer = self._core, self._renderer
+        self._core = self._renderer = self._stage = self._at = self._drawn = None
+        if renderer is not None:
+            renderer.forget()  # frames that somebody keeps know it
+        if core is not None:
+            core.close()
 
     def _go(self, offset: int) -> None:
         """Step to a frame of the episode, without drawing."""

@@ -9,10 +9,25 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import resource
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING, TypeVar
 
 from sailenv_ros.errors import InvalidState
 
-__all__ = ["give_back_freed_memory", "keep_freed_memory", "no_memory", "require_address_space"]
+if TYPE_CHECKING:
+    from functools import _lru_cache_wrapper
+
+__all__ = [
+    "cached_for_scenes",
+    "forget_scenes",
+    "give_back_freed_memory",
+    "keep_freed_memory",
+    "no_memory",
+    "require_address_space",
+]
+
+Result = TypeVar("Result")
 
 _M_TRIM_THRESHOLD = -1
 _M_MMAP_THRESHOLD = -3
@@ -29,6 +44,9 @@ KEPT_BYTES = 256 * 2**20
 
 _decided = False
 """Whether `keep_freed_memory` was called."""
+
+_of_scenes: list[Callable[[], None]] = []
+"""Empty the caches of `cached_for_scenes`."""
 
 
 def keep_freed_memory(*, many_scenes: bool = False) -> bool:
@@ -68,6 +86,28 @@ def give_back_freed_memory() -> None:
         keep_freed_memory(many_scenes=True)
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).malloc_trim(0)
+
+
+def cached_for_scenes(
+    most: int,
+) -> Callable[[Callable[..., Result]], _lru_cache_wrapper[Result]]:
+    """Return a decorator: `lru_cache` with at most so many results, which `forget_scenes` drops.
+
+    For large results that depend on a scene's cameras: in a stream of scenes each has others.
+    """
+
+    def decorated(function: Callable[..., Result]) -> _lru_cache_wrapper[Result]:
+        cached = lru_cache(maxsize=most)(function)
+        _of_scenes.append(cached.cache_clear)
+        return cached
+
+    return decorated
+
+
+def forget_scenes() -> None:
+    """Drop all that functions of `cached_for_scenes` keep."""
+    for clear in _of_scenes:
+        clear()
 
 
 def require_address_space(least_bytes: int) -> None:

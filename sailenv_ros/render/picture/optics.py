@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.frame.lens_rays import depth_shares, ray_lengths
 from sailenv_ros.native.lens_light import scale_light, weigh_light
+from sailenv_ros.system.memory import cached_for_scenes
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.picture_settings import PictureSettings
 
@@ -68,7 +69,7 @@ def through_lens(
     return scale_light(radiance, left, np.ones(3, np.float32), veil, threads=threads)
 
 
-@lru_cache(maxsize=4)
+@cached_for_scenes(4)
 def _shares(
     lens: CameraIntrinsics, vignetting: float, dirt: float
 ) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:

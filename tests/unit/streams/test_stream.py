@@ -7,6 +7,7 @@ import hashlib
 import multiprocessing
 import pickle
 import threading
+import weakref
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from sailenv_ros.simulation.scenes import SceneLibrary
 from sailenv_ros.streams import Course, Stream, StreamFrame
 from sailenv_ros.streams.plan import HABITS, StreamPlan
 from sailenv_ros.streams.player import Player
+from sailenv_ros.world.bullet import BulletClient
 from sailenv_ros.world.world import World
 
 ORDER = (29, 3, 4, 17, 16, 5, 98, 12, 12, 0, 30)
@@ -134,8 +136,8 @@ def test_parts_of_a_stream_share_its_simulation(
 def test_a_room_that_was_left_is_not_drawn_beside_the_next(
     course: Course, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """While an episode's world is built, the renderer holds at most what that shows."""
-    shown: list[tuple[str, str | None]] = []
+    """While an episode's world is built, renderers hold at most what that shows."""
+    shown: list[tuple[str, set[str]]] = []
     renderers: list[NativeRenderer] = []
 
     class Noted(NativeRenderer):
@@ -146,9 +148,10 @@ def test_a_room_that_was_left_is_not_drawn_beside_the_next(
     built = SceneLibrary.build
 
     def build(library: SceneLibrary, scene: str | Path, *given: Any, **more: Any) -> World:
-        kept = renderers[-1].part_table.contents
+        tables = [one.part_table.contents for one in renderers]
+        kept = {contents.scene for contents in tables if contents is not None}
         world = built(library, scene, *given, **more)
-        shown.append((Path(scene).stem, None if kept is None else kept.scene))
+        shown.append((Path(scene).stem, kept))
         return world
 
     monkeypatch.setattr("sailenv_ros.streams.player.NativeRenderer", Noted)
@@ -157,8 +160,62 @@ def test_a_room_that_was_left_is_not_drawn_beside_the_next(
         frames = [one[number] for number in range(1, 48, 6)]
     assert len({frame.room for frame in frames}) == 2
     assert len(shown) == 8
-    assert {kept for _, kept in shown} > {None}
-    assert all(kept in (None, room) for room, kept in shown)
+    assert any(kept for _, kept in shown)
+    assert all(kept <= {room} for room, kept in shown)
+
+
+def test_a_world_is_built_beside_no_other(course: Course, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the episode before no physics are left, of the room before nothing at all."""
+    left: list[tuple[str, set[str]]] = []
+    clients: set[BulletClient] = set()
+    libraries: weakref.WeakSet[SceneLibrary] = weakref.WeakSet()
+    worlds: weakref.WeakSet[World] = weakref.WeakSet()
+
+    class Noted(BulletClient):
+        def __init__(self) -> None:
+            super().__init__()
+            clients.add(self)
+
+        def close(self) -> None:
+            super().close()
+            clients.discard(self)
+
+    built = SceneLibrary.build
+
+    def build(library: SceneLibrary, scene: str | Path, *given: Any, **more: Any) -> World:
+        assert not clients
+        libraries.add(library)
+        assert len(libraries) == 1
+        left.append((Path(scene).stem, {world.scene for world in worlds}))
+        world = built(library, scene, *given, **more)
+        worlds.add(world)
+        return world
+
+    monkeypatch.setattr("sailenv_ros.world.world_state.BulletClient", Noted)
+    monkeypatch.setattr(SceneLibrary, "build", build)
+    with streams.open(course, seed=5, length=100) as one:
+        rooms = [one[number].room for number in range(1, 48, 6)]
+        assert len(clients) == 1
+    assert not clients
+    assert [Path(room).stem for room in rooms] == [room for room, _ in left]
+    assert any(others for _, others in left)
+    assert all(others <= {room} for room, others in left)
+
+
+def test_a_frame_outlives_its_room(course: Course) -> None:
+    """Objects of a kept frame are drawn alone as they were, whatever is played after it."""
+    with streams.open(course, seed=5, length=100) as one:
+        kept = one[3], one[4]
+        before = kept[0].frame.amodal
+        assert one[13].room != kept[0].room
+        after = kept[1].frame.amodal
+    with streams.open(course, seed=5, length=100) as one:
+        other = one[3], one[4]
+    for frame, found in zip(other, (before, after), strict=True):
+        expected = frame.frame.amodal
+        np.testing.assert_array_equal(found.ids, expected.ids)
+        np.testing.assert_array_equal(found.whole_pixels, expected.whole_pixels)
+    assert before.whole_pixels.any()
 
 
 def test_a_room_is_drawn_for_its_frames_alone(

@@ -7,8 +7,12 @@ import resource
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
+from sailenv_ros.frame.lens_rays import ray_lengths
+from sailenv_ros.system.memory import cached_for_scenes, forget_scenes
+from sailenv_ros.types.camera import CameraIntrinsics
 from tests.support import allocator
 from tests.support.programs import run
 
@@ -118,3 +122,32 @@ print(allocations().hblks - before)
 def test_once_memory_was_given_back_large_blocks_go_back_at_once(how: str, of_its_own: int) -> None:
     """Unless the process has said how it keeps memory: scenes come and go from then on."""
     assert int(run(_BLOCKS, how)) == of_its_own
+
+
+def test_what_was_cached_for_scenes_is_dropped_with_them() -> None:
+    made = []
+
+    @cached_for_scenes(2)
+    def picture(edge: int) -> np.ndarray:
+        made.append(edge)
+        return np.ones((edge, edge))
+
+    first = picture(2)
+    assert picture(2) is first
+    forget_scenes()
+    assert picture(2) is not first
+    assert made == [2, 2]
+    for edge in (3, 4, 2):
+        picture(edge)
+    assert made == [2, 2, 3, 4, 2]
+    forget_scenes()
+    assert picture.cache_info().currsize == 0
+
+
+def test_what_depends_on_a_camera_is_cached_for_scenes() -> None:
+    """In a stream that drifts they would have another one in each room."""
+    lens = CameraIntrinsics(width=16, height=16)
+    ray_lengths(lens)
+    assert ray_lengths.cache_info().currsize > 0
+    forget_scenes()
+    assert ray_lengths.cache_info().currsize == 0
