@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import threading
 from collections.abc import Iterator, Sequence
@@ -102,7 +101,9 @@ def build_collision(
         parts = _joined(client, parts, name)
     has_hulls = any("vertices" in part for part in parts)
     with temporary_folder("sailenv-hulls-") if has_hulls else nullcontext(Path()) as folder:
-        files = [_hull_file(folder, part, name) for part in parts]
+        files = [
+            _hull_file(folder / f"{number}.obj", part, name) for number, part in enumerate(parts)
+        ]
         return int(client.createCollisionShapeArray(**_as_arrays(parts), fileNames=files))
 
 
@@ -180,8 +181,10 @@ def _triangles(constants: Any, shape: TriangleShape, scale: Vector3) -> dict[str
     }
 
 
-def _hull_file(folder: Path, part: dict[str, Any], name: str) -> str:
+def _hull_file(path: Path, part: dict[str, Any], name: str) -> str:
     """Write a hull's points as OBJ: inside a compound PyBullet takes meshes from files alone.
+
+    It keeps a copy of the path for good, so paths are short.
 
     Returns
     -------
@@ -201,7 +204,6 @@ def _hull_file(folder: Path, part: dict[str, Any], name: str) -> str:
         lines += [f"f {first} {corner} {corner + 1}" for corner in range(first + 1, end - 1)]
         first = end
     text = ("\n".join(lines) + "\n").encode("ascii")
-    path = folder / f"{hashlib.sha256(text).hexdigest()}.obj"
     path.write_bytes(text)
     return str(path)
 

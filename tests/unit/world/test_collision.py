@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import gc
 import math
+import sys
+import tempfile
 import tracemalloc
 from pathlib import Path
 from typing import Any
@@ -149,6 +151,14 @@ def test_hulls_of_compounds_that_do_not_come_again_keep_no_memory() -> None:
         _hits([SLAB, hull], [])
     gc.collect()
     assert allocations().uordblks - before < 400_000
+
+
+def test_little_is_left_of_the_hulls_of_a_compound() -> None:
+    """PyBullet never frees the path of a hull's file, which is the longer part of what it keeps."""
+    dice = np.random.default_rng(3)
+    hulls = [ConvexShape(points=dice.normal(size=(10, 3))) for _ in range(201)]
+    path = sys.getsizeof(b"") + len(f"{tempfile.gettempdir()}/sailenv-hulls-12345678/1.obj")
+    assert _grown([[SLAB, hull] for hull in hulls]) < 200 * (path + 15)
 
 
 def test_bodies_of_hulls_are_made_without_a_word(capfd: pytest.CaptureFixture[str]) -> None:
