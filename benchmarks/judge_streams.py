@@ -15,8 +15,8 @@ that walks, or stands, in one room, one drift at a time, which begins at a frame
 without any drift. ADWIN makes a test each 32 frames; its `delta`, the share of false alarms, is
 divided by the number of tests in 100,000 frames (Bonferroni). `memory` makes two frames of each
 episode of `home`, or of the first few in each room, and tells the memory of the process after each
-room, and the most of each tour through all rooms that begins after 10,000 frames; then the most of
-the last tour in another process, which has not played the ones before.
+room, and mean and most of each tour through all rooms that begins after 10,000 frames; then those
+of the last tour in another process, which has not played the ones before.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
@@ -273,7 +273,7 @@ def measure_memory(begin: int, count: int, seed: int, episodes: int) -> None:
         if one.entered >= begin + WARM_FRAMES:
             tours.setdefault((one.entered - begin - WARM_FRAMES) // one.tour, []).append(one)
             words = ", ".join(_told(rooms) for rooms in tours.values())
-            print(f"most of its own after a room / ever, by tour: {words} MiB", flush=True)
+            print(f"its own: mean / most after a room / ever, by tour: {words} MiB", flush=True)
     if len(tours) < 2:
         return
     rooms = [one for rooms in tours.values() for one in rooms]
@@ -281,8 +281,7 @@ def measure_memory(begin: int, count: int, seed: int, episodes: int) -> None:
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         fresh = pool.apply(_list_of_rooms, (played[0].entered, count, seed, episodes))
     for how, made in (("played through", played), ("by itself", fresh)):
-        mean = sum(one.own for one in made) / len(made)
-        print(f"the last tour {how}: {_told(made)} MiB, {mean:.0f} after a room on average")
+        print(f"the last tour {how}: {_told(made)} MiB")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -323,7 +322,9 @@ def _list_of_rooms(*given: int) -> list[_RoomMemory]:
 
 
 def _told(rooms: Sequence[_RoomMemory]) -> str:
-    return f"{max(one.own for one in rooms):.0f} / {max(one.own_most for one in rooms):.0f}"
+    mean = sum(one.own for one in rooms) / len(rooms)
+    most = max(one.own for one in rooms), max(one.own_most for one in rooms)
+    return f"{mean:.0f} / {most[0]:.0f} / {most[1]:.0f}"
 
 
 class _MostOwn:
