@@ -107,11 +107,10 @@ class NativeRenderer(DrawingRenderer):
         for drawing in (self._drawing, *self._beside):
             drawing.close()
 
-    def render_all(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
-        """Make the views of several cameras, side by side where they are of one instant."""
-        requests = [self._checked(request) for request in requests]
+    def _rendered(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
+        """Make the views of requests, side by side where they are of one instant."""
         if len(requests) < 2 or not _of_one_instant(requests):
-            return super().render_all(requests)
+            return super()._rendered(requests)
         timings: Timings = {}
         lit = not all(LIT_VIEWS.isdisjoint(request.views) for request in requests)
         light = self._take_up(requests[0].snapshot, timings, lit=lit)

@@ -30,7 +30,7 @@ from sailenv_ros.render.gl.materials import MaterialBuffers
 from sailenv_ros.render.gl.picture_buffers import PictureBuffers
 from sailenv_ros.render.gl.programs import ProgramCache
 from sailenv_ros.render.gl.scene_light import SceneLight
-from sailenv_ros.render.picture.finishing import Arrays, DrawingRenderer, Timings
+from sailenv_ros.render.picture.finishing import Arrays, Draw, DrawingRenderer, Timings
 from sailenv_ros.render.picture.mirror_pictures import closer_window, reflect
 from sailenv_ros.render.scene.drawn_meshes import drawn_meshes
 from sailenv_ros.render.scene.flat_mirrors import FlatMirrors, SeenMirror, Window
@@ -99,17 +99,14 @@ class Renderer(DrawingRenderer):
         made = {*views_of("lighting", "annotation", "measurement"), *self._outputs}
         return tuple(view for view in VIEWS if view in made)
 
-    def render(self, request: RenderRequest) -> RenderedViews:
-        """Make the wanted views.
-
-        Through lenses that bend straight lines and rolling shutters by the native renderer.
-        """
+    def _finished(self, request: RenderRequest, draw: Draw, threads: int) -> RenderedViews:
+        """Make views; through bent lenses and rolling shutters by the native renderer."""
         past = request.previous
         is_global = request.rows is None and (past is None or past.rows is None)
-        if (request.camera.intrinsics.is_pinhole and is_global) or self._closed:
-            return super().render(request)
+        if request.camera.intrinsics.is_pinhole and is_global:
+            return super()._finished(request, draw, threads)
         if self._native is None:
-            self._native = NativeRenderer(threads=self._threads)
+            self._native = NativeRenderer(threads=threads)
         return self._native.render(request)
 
     def _drawing_context(self) -> moderngl.Context:

@@ -61,18 +61,20 @@ class DrawingRenderer(ABC):
 
     def render(self, request: RenderRequest) -> RenderedViews:
         """Make the wanted views of one camera; see `RenderBackend.render`."""
-        return self._finished(self._checked(request), self._draw, self._threads)
+        return self.render_all([request])[0]
 
     def render_all(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
-        """Make the views of several cameras, one after another; see `RenderBackend.render_all`."""
-        checked = [self._checked(request) for request in requests]
-        return [self.render(request) for request in checked]
-
-    def _checked(self, request: RenderRequest) -> RenderRequest:
-        """Return a request whose views are a tuple of those that can be made."""
+        """Make the views of several cameras; see `RenderBackend.render_all`."""
         if self._closed:
             raise RenderError("the renderer was closed")
-        return replace(request, views=checked_views(request.views, supported=self.supported_views))
+        known = self.supported_views
+        return self._rendered(
+            [replace(one, views=checked_views(one.views, supported=known)) for one in requests]
+        )
+
+    def _rendered(self, requests: Sequence[RenderRequest]) -> list[RenderedViews]:
+        """Make the views of requests that were checked, one after another."""
+        return [self._finished(request, self._draw, self._threads) for request in requests]
 
     def _finished(self, request: RenderRequest, draw: Draw, threads: int) -> RenderedViews:
         """Draw and finish what one request asks for, whose views were checked."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,14 +62,6 @@ class _Spot:
     polished: bool
 
 
-class _Panel(NamedTuple):
-    """Where an area light is, where it shines to, and its diagonal [m]."""
-
-    middle: tuple[float, float, float]
-    direction: tuple[float, float, float]
-    diagonal_m: float
-
-
 class ReflectionPoints:
     """The points of the scene that is shown.
 
@@ -105,7 +96,7 @@ class ReflectionPoints:
         middle, self.box = view_point(contents.baked.probes)
         found = [middle, middle]
         at = self._world(snapshot)
-        mirrors = self._polished & ~self._is_lampless(at, _panels(contents.lights))
+        mirrors = self._polished & ~self._is_lampless(at, contents.lights)
         at, size = at[mirrors], self._sizes[mirrors]
         towards = middle - at
         distance = np.maximum(np.linalg.norm(towards, axis=1, keepdims=True), 1e-6)
@@ -128,9 +119,8 @@ class ReflectionPoints:
         R is a multiple of `ROW_IDS`. Another array when it has changed.
         """
         contents = snapshot.contents
-        panels = _panels(contents.lights)
         where = snapshot.world_from_body.tobytes() + self.points.tobytes()
-        of = (contents.instances, where, panels)
+        of = (contents.instances, where, contents.lights)
         if self._of == of:
             return self._table
         self._of = of
@@ -141,7 +131,7 @@ class ReflectionPoints:
         nearest = np.where(squares.min(axis=1) < FAR_M**2, np.argmin(squares, axis=1), 0) + MIDDLE
         ids = contents.instance_ids.astype(np.intp)
         table = np.zeros((int(ids.max(initial=0)) // ROW_IDS + 1) * ROW_IDS, np.int32)
-        table[ids] = np.where(self._is_lampless(at, panels), LAMPLESS, nearest)
+        table[ids] = np.where(self._is_lampless(at, contents.lights), LAMPLESS, nearest)
         if not np.array_equal(table, self._table):
             self._table = table
         return self._table
@@ -175,17 +165,19 @@ class ReflectionPoints:
             points[within, 2] = middle[2] + half[2] + INSIDE_M
         points[:, 2] = np.minimum(points[:, 2], self.box[1, 2] - INSIDE_M)
 
-    def _is_lampless(self, at: NDArray[np.float64], panels: Iterable[_Panel]) -> NDArray[np.bool_]:
+    def _is_lampless(self, at: NDArray[np.float64], lights: Iterable[Light]) -> NDArray[np.bool_]:
         """Return (N,): which instances, that mirror at places, (N, 3), mirror no lamps.
 
         Those that are large, and those close behind an area light, where it does not shine, such
         as curtains: seen from before it they would mirror it.
         """
         lampless = self._sizes >= LARGE_M
-        for panel in panels:
-            offsets = at - panel.middle
-            near = np.linalg.norm(offsets, axis=1) < panel.diagonal_m
-            lampless |= near & (offsets @ panel.direction < 0.0)
+        for light in lights:
+            if light.type == "area":
+                offsets = at - light.position_m
+                diagonal_m = math.hypot(light.width_m, light.height_m)
+                near = np.linalg.norm(offsets, axis=1) < diagonal_m
+                lampless |= near & (offsets @ light.direction < 0.0)
         return lampless
 
     def _world(self, snapshot: WorldSnapshot) -> NDArray[np.float64]:
@@ -194,15 +186,6 @@ class ReflectionPoints:
             "nij,nj->ni", snapshot.world_from_body[:, :3], self._middles
         )
         return at
-
-
-def _panels(lights: Iterable[Light]) -> list[_Panel]:
-    """Return the places of area lights."""
-    return [
-        _Panel(light.position_m, light.direction, math.hypot(light.width_m, light.height_m))
-        for light in lights
-        if light.type == "area"
-    ]
 
 
 def _spot(model: Model) -> _Spot:
