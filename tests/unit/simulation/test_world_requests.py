@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -114,13 +114,13 @@ def test_a_frame_is_delivered_to_whom_it_was_drawn_for(
     """Who wants no more views while it is drawn gets it all the same; it is not drawn again."""
     core.set_rate(30.0, agent="eye")
     stream = core.open_stream("eye", ("instance",), lambda _: None)
-    render = core.render
+    render = core.streams._render
 
-    def changing_minds(*asked: Any) -> Frame:
+    def changing_minds(*asked: Any) -> Sequence[Frame]:
         stream.set_views(())
         return render(*asked)
 
-    monkeypatch.setattr(core, "render", changing_minds)
+    monkeypatch.setattr(core.streams, "_render", changing_minds)
     core.streams.render_due()
     assert [*stream.get(0.0).views] == ["instance"]
 

@@ -223,13 +223,13 @@ def test_a_room_is_drawn_for_its_frames_alone(
 ) -> None:
     """Not before it is furnished and painted: both would be in memory, and be made twice."""
     drawn: list[int] = []
-    render = NativeRenderer.render
+    render = NativeRenderer.render_all
 
-    def noted(renderer: NativeRenderer, *given: Any, **more: Any) -> RenderedViews:
+    def noted(renderer: NativeRenderer, *given: Any, **more: Any) -> list[RenderedViews]:
         drawn.append(number)
         return render(renderer, *given, **more)
 
-    monkeypatch.setattr(NativeRenderer, "render", noted)
+    monkeypatch.setattr(NativeRenderer, "render_all", noted)
     with streams.open(course, seed=5, length=100) as one:
         rooms = set()
         for number in range(0, 96, 12):
