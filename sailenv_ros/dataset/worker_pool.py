@@ -155,6 +155,6 @@ def _end_all(pools: Sequence[ProcessPoolExecutor]) -> None:
 
 def _end(pool: ProcessPoolExecutor) -> None:
     """End workers that still run at once; what they have not finished is not there."""
-    processes = list((getattr(pool, "_processes", None) or {}).values())
-    pool.shutdown(wait=False, cancel_futures=True)
-    end_at_once(processes)
+    end_at_once(list((getattr(pool, "_processes", None) or {}).values()))
+    # The pool's own thread takes note of their ends, too: without it they may seem to run yet.
+    pool.shutdown(cancel_futures=True)
