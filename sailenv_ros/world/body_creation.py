@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sailenv_ros.world.bullet import LINK_OF_BASE, BulletClient
-from sailenv_ros.world.collision import build_collision, hulls_forgotten
+from sailenv_ros.world.collision import build_collision, hull_files
 from sailenv_ros.world.placement import Placement
 
 __all__ = ["ROLLING_FRICTION", "create_rigid_body", "mass_of"]
@@ -34,9 +34,9 @@ def create_rigid_body(
     position_m : (3,) sequence of float
         Where that is in the world [m].
     """
-    with hulls_forgotten(client):
+    with hull_files(client) as files:
         shape = build_collision(
-            client,
+            files,
             placement.asset.collision,
             scale=placement.scale,
             centre_of_mass_m=centre_m,

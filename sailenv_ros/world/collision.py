@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import threading
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ from sailenv_ros.types.model import (
 )
 from sailenv_ros.world.bullet import BulletClient
 
-__all__ = ["NO_COLLISION", "build_collision", "hulls_forgotten"]
+__all__ = ["NO_COLLISION", "HullFiles", "build_collision", "hull_files"]
 
 NO_COLLISION = -1
 """PyBullet's number for a body that nothing collides with."""
@@ -40,29 +40,52 @@ MAX_SHAPES = 16
 _LOCK = threading.Lock()
 
 
+class HullFiles:
+    """Files of hulls, of which PyBullet makes shapes and bodies; see `hull_files`.
+
+    It keeps each name that it is given for good, so names are short and without their folder.
+    It looks for them in the working directory first, where nothing has a name like these.
+    """
+
+    def __init__(self, client: BulletClient, temporary: ExitStack) -> None:
+        self.client, self._temporary = client, temporary
+        self._folder: Path | None = None
+        self._names = (f".sailenv{number}.obj" for number in itertools.count())
+
+    def write(self, text: str) -> str:
+        """Return the name of a new file, by which PyBullet finds it."""
+        if self._folder is None:
+            self._folder = self._temporary.enter_context(temporary_folder("sailenv-hulls-"))
+            self.client.setAdditionalSearchPath(str(self._folder))
+        name = next(self._names)
+        (self._folder / name).write_text(text, encoding="ascii")
+        return name
+
+
 @contextmanager
-def hulls_forgotten(client: BulletClient) -> Iterator[None]:
-    """Make bodies of shapes of `build_collision` within this.
+def hull_files(client: BulletClient) -> Iterator[HullFiles]:
+    """Make shapes by `build_collision`, and bodies of them, within this.
 
     PyBullet keeps what it has read of files, by their names: it reads those of a body's hulls when
-    it makes the shape, and again for the body, when they are gone. Afterwards it must forget them,
-    or it would keep all hulls of the process.
+    it makes the shape, and again for the body. Afterwards it must forget them, or it would keep all
+    hulls of the process.
     """
-    with _LOCK:  # what it keeps is one for all threads
-        yield
+    # What it keeps, and where it looks for files, is one for all threads.
+    with _LOCK, ExitStack() as temporary:
+        yield HullFiles(client, temporary)
         for kept in (0, 1):
             client.setPhysicsEngineParameter(enableFileCaching=kept)
 
 
 def build_collision(
-    client: BulletClient,
+    files: HullFiles,
     shapes: Sequence[CollisionShape],
     *,
     scale: Vector3,
     centre_of_mass_m: Vector3,
     name: str,
 ) -> int:
-    """Make one PyBullet collision shape, within `hulls_forgotten`.
+    """Make one PyBullet collision shape.
 
     Parameters
     ----------
@@ -85,6 +108,7 @@ def build_collision(
     """
     if not shapes:
         return NO_COLLISION
+    client = files.client
     parts = [_part(client, shape, scale, name) for shape in shapes]
     for part in parts:
         part["position"] = list(np.asarray(part["position"]) - np.asarray(centre_of_mass_m))
@@ -99,12 +123,8 @@ def build_collision(
             return int(client.createCollisionShape(**part, **read))
     if len(parts) > MAX_SHAPES:
         parts = _joined(client, parts, name)
-    has_hulls = any("vertices" in part for part in parts)
-    with temporary_folder("sailenv-hulls-") if has_hulls else nullcontext(Path()) as folder:
-        files = [
-            _hull_file(folder / f"{number}.obj", part, name) for number, part in enumerate(parts)
-        ]
-        return int(client.createCollisionShapeArray(**_as_arrays(parts), fileNames=files))
+    names = [_hull_file(files, part, name) for part in parts]
+    return int(client.createCollisionShapeArray(**_as_arrays(parts), fileNames=names))
 
 
 def _joined(
@@ -181,14 +201,12 @@ def _triangles(constants: Any, shape: TriangleShape, scale: Vector3) -> dict[str
     }
 
 
-def _hull_file(path: Path, part: dict[str, Any], name: str) -> str:
+def _hull_file(files: HullFiles, part: dict[str, Any], name: str) -> str:
     """Write a hull's points as OBJ: inside a compound PyBullet takes meshes from files alone.
-
-    It keeps a copy of the path for good, so paths are short.
 
     Returns
     -------
-    path : str
+    file : str
         Empty for shapes that are no meshes.
     """
     if "vertices" not in part:
@@ -203,9 +221,7 @@ def _hull_file(path: Path, part: dict[str, Any], name: str) -> str:
         end = first + len(points)
         lines += [f"f {first} {corner} {corner + 1}" for corner in range(first + 1, end - 1)]
         first = end
-    text = ("\n".join(lines) + "\n").encode("ascii")
-    path.write_bytes(text)
-    return str(path)
+    return files.write("\n".join(lines) + "\n")
 
 
 def _hollow(name: str) -> InvalidRequest:

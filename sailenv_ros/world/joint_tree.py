@@ -14,7 +14,7 @@ from sailenv_ros.errors import PhysicsError
 from sailenv_ros.types.geometry import POSITION_LIMIT_M, Pose, invert
 from sailenv_ros.world import tree_motors
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
-from sailenv_ros.world.collision import hulls_forgotten
+from sailenv_ros.world.collision import hull_files
 from sailenv_ros.world.joint_law import Motor, law_of
 from sailenv_ros.world.joint_links import STANDING, JointDrive, JointLink, at_origin
 from sailenv_ros.world.kinematics import composed
@@ -83,8 +83,8 @@ class JointTree:
         )
         self._known_at = -1
         self.is_driven, self._version = False, 0
-        with hulls_forgotten(client):
-            self.bullet_id = build_tree(client, self._links, world_from_rest)
+        with hull_files(client) as files:
+            self.bullet_id = build_tree(files, self._links, world_from_rest)
         for number, link in enumerate(self._links):
             set_dynamics(client, self.bullet_id, self.link_of(number), link)
             if self._moves[number]:

@@ -10,7 +10,7 @@ import numpy as np
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.world.body_creation import ROLLING_FRICTION
 from sailenv_ros.world.bullet import LINK_OF_BASE, STEPS_PER_SECOND, BulletClient
-from sailenv_ros.world.collision import build_collision
+from sailenv_ros.world.collision import HullFiles, build_collision
 from sailenv_ros.world.joint_links import JointLink, at_origin
 
 __all__ = ["build_tree", "set_dynamics"]
@@ -21,12 +21,12 @@ UNLIMITED = (1.0, -1.0)
 LIMIT_FORCE = 1e7
 
 
-def build_tree(client: BulletClient, links: Sequence[JointLink], world_from_rest: Pose) -> int:
-    """Put links into the engine as one body, within `hulls_forgotten`; return its number there.
+def build_tree(files: HullFiles, links: Sequence[JointLink], world_from_rest: Pose) -> int:
+    """Put links into the engine as one body; return its number there.
 
     Parameters
     ----------
-    client : BulletClient
+    files : HullFiles
     links : sequence of JointLink
         Parents before what they carry. The first one carries all, if it is free.
     world_from_rest : Pose
@@ -37,6 +37,7 @@ def build_tree(client: BulletClient, links: Sequence[JointLink], world_from_rest
     InvalidRequest
         If an object's collision shape cannot have its scale; nothing is in the engine then.
     """
+    client = files.client
     kinds, first = client.constants, links[0]
     is_free = first.joint.spec.type == "free"
     joint_types = {
@@ -47,7 +48,7 @@ def build_tree(client: BulletClient, links: Sequence[JointLink], world_from_rest
     }
     shapes = [
         build_collision(
-            client,
+            files,
             link.placement.asset.collision,
             scale=link.placement.scale,
             # The frame of a link is at its joint's origin.

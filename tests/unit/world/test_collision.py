@@ -8,7 +8,6 @@ import sys
 import tempfile
 import tracemalloc
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +21,7 @@ from sailenv_ros.types.model import (
     TriangleShape,
 )
 from sailenv_ros.world.bullet import BulletClient
-from sailenv_ros.world.collision import build_collision, hulls_forgotten
+from sailenv_ros.world.collision import build_collision, hull_files
 from tests.support.allocator import allocations
 
 SLAB = BoxShape(half_extents_m=(2.0, 2.0, 0.1), centre_m=(0.0, 0.0, -0.1))
@@ -40,9 +39,9 @@ def _hits(
     """Heights at which rays straight down meet a body of the shapes; NaN for none."""
     client = BulletClient()
     try:
-        with hulls_forgotten(client):
+        with hull_files(client) as files:
             shape = build_collision(
-                client, shapes, scale=scale, centre_of_mass_m=(0.0, 0.0, 0.0), name="body"
+                files, shapes, scale=scale, centre_of_mass_m=(0.0, 0.0, 0.0), name="body"
             )
             client.createMultiBody(baseMass=0.0, baseCollisionShapeIndex=shape)
         found = [client.rayTest((x, y, 9.0), (x, y, -9.0))[0] for x, y in rays]
@@ -153,12 +152,15 @@ def test_hulls_of_compounds_that_do_not_come_again_keep_no_memory() -> None:
     assert allocations().uordblks - before < 400_000
 
 
-def test_little_is_left_of_the_hulls_of_a_compound() -> None:
-    """PyBullet never frees the path of a hull's file, which is the longer part of what it keeps."""
+def test_little_is_left_of_the_hulls_of_a_compound(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """PyBullet never frees the name of a hull's file that it is given: no path, however long."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     dice = np.random.default_rng(3)
     hulls = [ConvexShape(points=dice.normal(size=(10, 3))) for _ in range(201)]
-    path = sys.getsizeof(b"") + len(f"{tempfile.gettempdir()}/sailenv-hulls-12345678/1.obj")
-    assert _grown([[SLAB, hull] for hull in hulls]) < 200 * (path + 15)
+    name = sys.getsizeof(b".sailenv0.obj")
+    assert _grown([[SLAB, hull] for hull in hulls]) < 200 * name + 10_000
 
 
 def test_bodies_of_hulls_are_made_without_a_word(capfd: pytest.CaptureFixture[str]) -> None:
@@ -183,26 +185,31 @@ def _grown(bodies: list[list[CollisionShape]]) -> int:
     return after - before
 
 
-def _files(client: BulletClient, monkeypatch: pytest.MonkeyPatch) -> list[Path]:
-    """Build a compound of hulls; return the files that PyBullet was given."""
-    given: list[str] = []
-    make = client.createCollisionShapeArray
-
-    def noted(**arguments: Any) -> int:
-        given.extend(name for name in arguments["fileNames"] if name)
-        assert all(Path(name).exists() for name in given)
-        return int(make(**arguments))
-
-    monkeypatch.setitem(client.__dict__, "createCollisionShapeArray", noted)
-    build_collision(
-        client, [SLAB, PYRAMID], scale=(1.0, 1.0, 1.0), centre_of_mass_m=(0, 0, 0), name="a"
-    )
-    monkeypatch.undo()
-    return [Path(name) for name in given]
-
-
-def test_a_hulls_file_is_removed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_hulls_files_are_removed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     client = BulletClient()
-    (file,) = _files(client, monkeypatch)
+    with hull_files(client) as files:
+        for compound in ([SLAB, PYRAMID, PYRAMID], [SLAB, PYRAMID]):
+            build_collision(
+                files, compound, scale=(1.0, 1.0, 1.0), centre_of_mass_m=(0, 0, 0), name="a"
+            )
+        assert len(list(tmp_path.glob("*/*.obj"))) == 3
     client.close()
-    assert not file.parent.exists()
+    assert not list(tmp_path.iterdir())
+
+
+def test_hulls_of_compounds_that_are_made_together_are_their_own() -> None:
+    """PyBullet knows what it has read by names of files."""
+    flat = ConvexShape(points=PYRAMID.points * [1.0, 1.0, 0.5])
+    client = BulletClient()
+    with hull_files(client) as files:
+        for x, hull in ((0.0, PYRAMID), (5.0, flat)):
+            shape = build_collision(
+                files, [SLAB, hull], scale=(1.0, 1.0, 1.0), centre_of_mass_m=(0, 0, 0), name="a"
+            )
+            client.createMultiBody(
+                baseMass=0.0, baseCollisionShapeIndex=shape, basePosition=(x, 0.0, 0.0)
+            )
+    heights = [client.rayTest((x, 0.0, 9.0), (x, 0.0, -9.0))[0][3][2] for x in (0.0, 5.0)]
+    client.close()
+    assert heights == pytest.approx([1.0, 0.5], abs=0.003)
