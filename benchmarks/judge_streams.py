@@ -5,7 +5,8 @@
     python benchmarks/judge_streams.py avalanche [--experiences N]
     python benchmarks/judge_streams.py drift [--seed N] [--habit NAME]
     python benchmarks/judge_streams.py still [--frames N] [--seed N] [--habit NAME]
-    python benchmarks/judge_streams.py memory [--begin N] [--frames N] [--seed N] [--episodes N]
+    python benchmarks/judge_streams.py memory [--course NAME] [--begin N] [--frames N] [--seed N]
+        [--episodes N]
 
 `seek` plays a part of `home` through, makes random frames of it in another process by their
 numbers, and compares all bytes. `loader` reads through `torch.utils.data.DataLoader`, in order and
@@ -24,9 +25,12 @@ Needed are `river`, `torch` and `avalanche-lib` beside this project, in an envir
 from __future__ import annotations
 
 import argparse
+import contextlib
 import hashlib
+import importlib
 import multiprocessing
 import resource
+import sys
 import tempfile
 import threading
 import time
@@ -111,6 +115,7 @@ def main() -> None:
     drift = actions.add_parser("drift")
     still = actions.add_parser("still")
     memory = actions.add_parser("memory")
+    memory.add_argument("--course", default="home", help="`still_home` has no drift")
     memory.add_argument("--begin", type=int, default=0)
     memory.add_argument("--frames", type=int, default=410_000)
     memory.add_argument("--episodes", type=int, default=8)
@@ -131,7 +136,9 @@ def main() -> None:
     elif options.action == "still":
         judge_stillness(options.frames, options.seed, options.habit)
     else:
-        measure_memory(options.begin, options.frames, options.seed, options.episodes)
+        measure_memory(
+            options.course, options.begin, options.frames, options.seed, options.episodes
+        )
 
 
 def judge_seeking(count: int) -> None:
@@ -260,14 +267,15 @@ def judge_stillness(count: int, seed: int, habit: str) -> None:
         print(f"{end} frames without drift: {found}", flush=True)
 
 
-def measure_memory(begin: int, count: int, seed: int, episodes: int) -> None:
+def measure_memory(course: str, begin: int, count: int, seed: int, episodes: int) -> None:
     """Print the memory of this process after each room, of whose frames few are made.
 
     Rooms differ, and change with the stream. So at the end another process makes the frames of the
-    last tour alone: what it needs less is what this one kept of all before.
+    last tour alone: what it needs less is what this one kept of all before. It finds on disk what
+    this one had to make, for which modules were needed, so it begins by importing all of this one.
     """
     tours: dict[int, list[_RoomMemory]] = {}
-    for one in _rooms_memory(begin, count, seed, episodes):
+    for one in _rooms_memory(course, begin, count, seed, episodes):
         told = f"{one.own:.0f} MiB of its own, {one.own_most:.0f} at most"
         print(f"frame {one.left}: {told}; {one.all:.0f} with files, {one.most:.0f} at most")
         if one.entered >= begin + WARM_FRAMES:
@@ -279,7 +287,9 @@ def measure_memory(begin: int, count: int, seed: int, episodes: int) -> None:
     rooms = [one for rooms in tours.values() for one in rooms]
     played = [one for one in rooms if one.left > rooms[-1].left - one.tour]
     with multiprocessing.get_context("spawn").Pool(1) as pool:
-        fresh = pool.apply(_list_of_rooms, (played[0].entered, count, seed, episodes))
+        fresh = pool.apply(
+            _list_of_rooms, (sorted(sys.modules), course, played[0].entered, count, seed, episodes)
+        )
     for how, made in (("played through", played), ("by itself", fresh)):
         print(f"the last tour {how}: {_told(made)} MiB")
 
@@ -300,14 +310,16 @@ class _RoomMemory:
     most: float
 
 
-def _rooms_memory(begin: int, end: int, seed: int, episodes: int) -> Iterator[_RoomMemory]:
+def _rooms_memory(
+    course: str, begin: int, end: int, seed: int, episodes: int
+) -> Iterator[_RoomMemory]:
     keep_freed_memory(many_scenes=True)
-    with streams.open("home", seed=seed) as stream, _MostOwn() as most_own:
-        course = stream.course
-        stay = course.episode * course.visit
+    with streams.open(course, seed=seed) as stream, _MostOwn() as most_own:
+        episode = stream.course.episode
+        stay = episode * stream.course.visit
         for entered in range(begin // stay * stay, end, stay):
             forget_peak()
-            for first in range(entered, entered + stay, course.episode)[:episodes]:
+            for first in range(entered, entered + stay, episode)[:episodes]:
                 for number in (first, first + 2):
                     stream[number]
             own, all_mib, most = (memory_mib(one) for one in ("RssAnon", "VmRSS", "VmHWM"))
@@ -317,8 +329,14 @@ def _rooms_memory(begin: int, end: int, seed: int, episodes: int) -> Iterator[_R
             )  # fmt: skip
 
 
-def _list_of_rooms(*given: int) -> list[_RoomMemory]:
-    return list(_rooms_memory(*given))
+def _list_of_rooms(
+    modules: Sequence[str], course: str, begin: int, end: int, seed: int, episodes: int
+) -> list[_RoomMemory]:
+    for name in modules:
+        if name != "__main__":
+            with contextlib.suppress(ImportError):  # of modules that others make as they run
+                importlib.import_module(name)
+    return list(_rooms_memory(course, begin, end, seed, episodes))
 
 
 def _told(rooms: Sequence[_RoomMemory]) -> str:

@@ -7,7 +7,6 @@ is found from the collision shapes of both, so that it rests there from the firs
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.scene.spec_objects import ObjectSpec
 from sailenv_ros.scene.spec_room import RoomSpec
 from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
+from sailenv_ros.system.memory import cached_for_scenes
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import (
     Asset,
@@ -242,7 +242,7 @@ def _over_triangles(points: Floats, triangles: NDArray[np.int32], under: Floats)
     return np.asarray(np.where(inside, heights, -np.inf).max(axis=1, initial=-np.inf))
 
 
-@lru_cache(maxsize=1024)
+@cached_for_scenes(1024)
 def _triangles_of(shape: CollisionShape) -> NDArray[np.int32]:
     """Return (N, 3): the faces of a shape, as rows of its corners; kept, as scipy loads slowly."""
     if isinstance(shape, TriangleShape):

@@ -93,7 +93,8 @@ def cached_for_scenes(
 ) -> Callable[[Callable[..., Result]], _lru_cache_wrapper[Result]]:
     """Return a decorator: `lru_cache` with at most so many results, which `forget_scenes` drops.
 
-    For large results that depend on a scene's cameras: in a stream of scenes each has others.
+    For large results that depend on a scene, as on its cameras or the shape of its room: in a
+    stream of scenes each has others.
     """
 
     def decorated(function: Callable[..., Result]) -> _lru_cache_wrapper[Result]:

@@ -7,7 +7,6 @@ import math
 import random
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
@@ -24,6 +23,7 @@ from sailenv_ros.scene.room_rules import WALLS
 from sailenv_ros.scene.spec_outside import NO_OUTSIDE, OUTSIDE
 from sailenv_ros.scene.spec_room import DoorSpec, OpeningSpec, RoomSpec, WindowSpec
 from sailenv_ros.system.array_cache import code_digest
+from sailenv_ros.system.memory import cached_for_scenes
 from sailenv_ros.types.model import Asset, Model, ModelPart
 from sailenv_ros.types.outside import Outside
 
@@ -96,7 +96,7 @@ def _hole(room: RoomSpec, opening: OpeningSpec) -> tuple[Vector3, Vector3]:
     return (x0, y0, z0), (x1, y1, z1)
 
 
-@lru_cache(maxsize=4)
+@cached_for_scenes(4)
 def _made(room: RoomSpec, daylight: Daylight) -> Asset:
     parts = cached_object(
         "outside",

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sailenv_ros.assets.surfaces import Surface
+from sailenv_ros.system.memory import cached_for_scenes
 from sailenv_ros.types.model import BoxShape, Mesh
 
 __all__ = ["Box", "Faces", "WallFrame", "boxes_mesh", "collision_of"]
@@ -137,7 +137,7 @@ def boxes_mesh(boxes: Iterable[Box], *, chamfer_m: float = 0.0) -> Mesh:
     return _boxes_mesh(tuple(boxes), chamfer_m)
 
 
-@lru_cache(maxsize=256)
+@cached_for_scenes(256)
 def _boxes_mesh(boxes: tuple[Box, ...], chamfer_m: float) -> Mesh:
     # Who paints a wall has all of the room made again, in which nothing else differs.
     faces = Faces()

@@ -8,7 +8,6 @@ from __future__ import annotations
 import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
@@ -49,6 +48,7 @@ from sailenv_ros.scene.spec_room import (
     WallName,
     WindowSpec,
 )
+from sailenv_ros.system.memory import cached_for_scenes
 from sailenv_ros.types.model import (
     Asset,
     BoxShape,
@@ -120,7 +120,7 @@ def _looks(spec: RoomSpec) -> Iterator[SurfaceSpec]:
     yield from (area.surface for area in spec.floors)
 
 
-@lru_cache(maxsize=4)
+@cached_for_scenes(4)
 def _room_parts(
     spec: RoomSpec, looks: tuple[tuple[SurfaceSpec, Surface], ...]
 ) -> tuple[RoomPart, ...]:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import gc
 import inspect
 import resource
 import subprocess
 import sys
+import weakref
 
 import numpy as np
 import pytest
 
+from sailenv_ros.assets.rooms.pieces import Box, boxes_mesh
 from sailenv_ros.frame.lens_rays import ray_lengths
 from sailenv_ros.system.memory import cached_for_scenes, forget_scenes
 from sailenv_ros.types.camera import CameraIntrinsics
@@ -151,3 +154,12 @@ def test_what_depends_on_a_camera_is_cached_for_scenes() -> None:
     assert ray_lengths.cache_info().currsize > 0
     forget_scenes()
     assert ray_lengths.cache_info().currsize == 0
+
+
+def test_walls_and_windows_are_kept_no_longer_than_their_scene() -> None:
+    frame = [Box(low=(0.0, 0.0, 0.0), high=(1.0, 0.1, 0.1))]
+    mesh = weakref.ref(boxes_mesh(frame, chamfer_m=0.01).positions)
+    assert mesh() is boxes_mesh(frame, chamfer_m=0.01).positions
+    forget_scenes()
+    gc.collect()
+    assert mesh() is None
