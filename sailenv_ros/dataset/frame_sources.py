@@ -72,6 +72,7 @@ class _TarSource(FrameSource):
     def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
         super().__init__(folder, recipe)
         self._places: dict[Path, Mapping[str, _Place]] = {}
+        self._lenses: dict[str, tuple[Mapping[str, Any], CameraIntrinsics]] = {}
 
     def frame(
         self, record: Mapping[str, Any], *, objects: bool = True
@@ -98,7 +99,7 @@ class _TarSource(FrameSource):
                 stamp_ns=told["stamp_ns"],
                 dt_ns=told["dt_ns"],
                 camera=Camera(
-                    intrinsics=CameraIntrinsics(**told["lens"]),
+                    intrinsics=self._lens(record["camera"], told["lens"]),
                     pose=Pose(tuple(told["position"]), tuple(told["orientation_xyzw"])),
                 ),
                 depth_range_m=told["depth_range_m"],
@@ -109,6 +110,13 @@ class _TarSource(FrameSource):
         except (OSError, tarfile.TarError, KeyError, ValueError, TypeError) as problem:
             raise RecordingError(f"{path} cannot be read: {problem}") from None
         return frame, tuple(told.get("objects", ()))
+
+    def _lens(self, camera: str, told: Mapping[str, Any]) -> CameraIntrinsics:
+        """Return a camera's lens, which is the same in most of its frames."""
+        kept = self._lenses.get(camera)
+        if kept is None or kept[0] != told:
+            kept = self._lenses[camera] = told, CameraIntrinsics(**told)
+        return kept[1]
 
     def _places_in(self, path: Path) -> Mapping[str, _Place]:
         if path not in self._places:

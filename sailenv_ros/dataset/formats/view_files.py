@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
 
@@ -170,9 +171,20 @@ def _from_png(view: str, data: bytes) -> NDArray[Any]:
 
 def _from_npy(view: str, data: bytes) -> NDArray[Any]:
     # np.load copies piece by piece, which takes as long as all the rest for a small picture.
-    file = io.BytesIO(data)
-    if np.lib.format.read_magic(file) != (1, 0):
+    begin = 10 + int.from_bytes(data[8:10], "little")
+    head = _array_head(data[:begin])
+    if head is None:
         raise ValueError(f"the view {view} is not an array of version 1.0")
-    shape, in_columns, dtype = np.lib.format.read_array_header_1_0(file)
-    values = np.frombuffer(data, dtype, offset=file.tell())
+    shape, in_columns, dtype = head
+    values = np.frombuffer(data, dtype, offset=begin)
     return values.reshape(shape, order="F" if in_columns else "C")
+
+
+@lru_cache(maxsize=64)
+def _array_head(head: bytes) -> tuple[tuple[int, ...], bool, np.dtype[Any]] | None:
+    """Return shape, order and type of an array; most files of a view begin with the same bytes."""
+    file = io.BytesIO(head)
+    if np.lib.format.read_magic(file) != (1, 0):
+        return None
+    shape, in_columns, dtype = np.lib.format.read_array_header_1_0(file)
+    return shape, in_columns, dtype
