@@ -9,9 +9,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
 
-from sailenv_ros import Agent
+from sailenv_ros import Agent, Simulation
 from sailenv_ros.errors import NameTaken
+from sailenv_ros.ros.nodes.agent_endpoints import AgentEndpoints
+from sailenv_ros.ros.nodes.requests import OperationRunner
+from sailenv_ros.ros.nodes.tf_tree import TfTree
 from sailenv_ros.system import client_locks
 from sailenv_ros.system.process_locks import private_folder
 from sailenv_ros.types.agents import MAX_AGENTS, AgentSpec
@@ -152,3 +158,33 @@ def test_names_that_nobody_asked_for_come_again(
     finally:
         for number in range(2):
             (private_folder() / f"{number}{suffix}").unlink(missing_ok=True)
+
+
+@pytest.fixture
+def node() -> Iterator[Node]:
+    """A node of this process, which nobody spins."""
+    context = Context()
+    context.init([])
+    node = Node("endpoints", context=context, use_global_arguments=False)
+    yield node
+    node.destroy_node()
+    context.try_shutdown()
+
+
+def test_an_agent_that_goes_before_its_topics_come_leaves_none(node: Node) -> None:
+    """A page's agent is often gone when the node learns of it: 37 topics stayed each time."""
+    executor = SingleThreadedExecutor(context=node.context)
+    with Simulation("optical", mode="lockstep") as simulation:
+        runner = OperationRunner(simulation, executor)
+        endpoints = AgentEndpoints(node, simulation, runner, TfTree(node))
+        before = set(node.publishers)
+        for name in ("brief", "stays"):
+            simulation.register_agent(AgentSpec(name=name, rate_hz=30.0))
+        there = simulation.info
+        simulation.delete_agent("brief")
+        endpoints.reconcile(there)
+        made = set(node.publishers) - before
+        assert {publisher.topic.split("/")[0] for publisher in made} == {"stays"}
+        endpoints.close()
+        assert set(node.publishers) == before
+    executor.shutdown(0.0)

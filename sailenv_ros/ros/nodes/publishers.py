@@ -57,6 +57,11 @@ class AgentPublisher:
         Told where the agent is, as the topic `pose` is.
     disparity : DisparityTopics
         Told each frame, as it may be one of a stereo pair's.
+
+    Raises
+    ------
+    SailenvError
+        If the agent is gone already; no topic is left then.
     """
 
     def __init__(
@@ -72,6 +77,8 @@ class AgentPublisher:
         self._node = node
         self._simulation = simulation
         self._spec = spec
+        # First, as it is refused for an agent that is gone, whose topics nobody would remove.
+        self._stream = simulation.stream(spec.name, ()) if spec.rate_hz else None
         # A topic that never carries anything would have its subscribers wait for ever.
         views = simulation.supported_views
         self._images = {view: self._publisher(Image, view) for view in views}
@@ -91,17 +98,17 @@ class AgentPublisher:
         self._closing = threading.Event()
         self._last_sequence = 0
         self._last_pose: AgentPose | None = None
-        self._stream: FrameStream | None = None
         self._thread: threading.Thread | None = None
         self.overtaken = 0
-        if spec.rate_hz:
-            self._begin_stream()
+        if self._stream is not None:
+            self._begin_thread(self._stream)
 
     def set_rate(self, rate_hz: float) -> None:
         """Take note of a changed rate; 0 ends the stream."""
         self._spec = replace(self._spec, rate_hz=rate_hz)
         if rate_hz and self._stream is None:
-            self._begin_stream()
+            self._stream = self._simulation.stream(self._spec.name, ())
+            self._begin_thread(self._stream)
 
     def counts(self) -> AgentCounts:
         """Return what was published since this was asked before."""
@@ -174,10 +181,9 @@ class AgentPublisher:
 
     # -- the thread ------------------------------------------------------------------------
 
-    def _begin_stream(self) -> None:
-        self._stream = self._simulation.stream(self._spec.name, ())
+    def _begin_thread(self, stream: FrameStream) -> None:
         self._thread = threading.Thread(
-            target=self._follow, args=(self._stream,), name=f"{self._spec.name}-frames", daemon=True
+            target=self._follow, args=(stream,), name=f"{self._spec.name}-frames", daemon=True
         )
         self._thread.start()
 
