@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import io
 import struct
 from typing import get_args
@@ -23,6 +24,8 @@ from sailenv_ros.frame.pictures.codecs import (
     encode_png,
 )
 from sailenv_ros.native.library import native_library, using_instruction_set
+from tests.support import allocator
+from tests.support.programs import run
 
 RANDOM = np.random.default_rng(1)
 PICTURES: list[np.ndarray] = [
@@ -161,3 +164,26 @@ def test_inverse_depth_has_all_depths_to_half_a_step(depth: NDArray[np.float32])
     found = scale / (levels[known].astype(float) - offset)
     wanted = depth[known].astype(float)
     assert (np.abs(found - wanted) <= 1.01 * wanted**2 / (2 * scale) + 1e-6 * wanted).all()
+
+
+# The package may be an installed one, beside which no `tests` stand: the program brings its own.
+_THREADS = f"""{inspect.getsource(allocator)}
+import threading
+import numpy as np
+from sailenv_ros.frame.pictures.codecs import decode_picture, encode_png
+def work():
+    decode_picture(encode_png(np.zeros((48, 64, 3), np.uint8), "quick"))
+def in_threads(count):
+    for _ in range(count):
+        thread = threading.Thread(target=work)
+        thread.start()
+        thread.join()
+    return allocations().uordblks
+before = in_threads(20)
+print((in_threads(200) - before) / 200)
+"""
+
+
+def test_threads_that_encode_leave_nothing() -> None:
+    """OpenCV kept 0.9 kB of each thread that shared the change of the order of colours."""
+    assert float(run(_THREADS)) < 200.0
