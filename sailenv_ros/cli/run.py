@@ -20,7 +20,7 @@ from sailenv_ros.gateway import DEFAULT_HOST, DEFAULT_PORT, GatewayServer
 from sailenv_ros.gateway.protocol_commands import Protocol
 from sailenv_ros.simulation import Simulation
 from sailenv_ros.simulation.background_build import BackgroundBuild, furnishing
-from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.memory import keep_freed_memory, share_freed_memory
 from sailenv_ros.system.transport import stay_local
 from sailenv_ros.viewer import DEFAULT_HOST as VIEWER_HOST
 from sailenv_ros.viewer import DEFAULT_PORT as VIEWER_PORT
@@ -105,6 +105,7 @@ def _become_the_node(args: argparse.Namespace) -> int:
 def _run_alone(args: argparse.Namespace) -> int:
     logging.basicConfig(level=logging.INFO, format="%(levelname)s: %(message)s")
     keep_freed_memory()
+    share_freed_memory()
     # A shell starts what it puts into the background with SIGINT ignored; who sends it means it.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)

@@ -23,6 +23,7 @@ __all__ = [
     "forget_scenes",
     "give_back_freed_memory",
     "keep_freed_memory",
+    "share_freed_memory",
     "no_memory",
     "require_address_space",
 ]
@@ -31,6 +32,7 @@ Result = TypeVar("Result")
 
 _M_TRIM_THRESHOLD = -1
 _M_MMAP_THRESHOLD = -3
+_M_ARENA_MAX = -8
 
 LARGEST_KEPT_BYTES = 32 * 2**20
 """The largest block that is kept [B]: the most that glibc takes from its heap at all."""
@@ -40,6 +42,9 @@ LARGEST_KEPT_OF_SCENES_BYTES = 2**20
 
 KEPT_BYTES = 256 * 2**20
 """Free memory at the heap's end that is kept."""
+
+ARENAS = 2
+"""Heaps of a process whose threads share what they free."""
 
 
 _decided = False
@@ -70,6 +75,19 @@ def keep_freed_memory(*, many_scenes: bool = False) -> bool:
         return False
     kept = mallopt(_M_MMAP_THRESHOLD, largest_bytes)
     return bool(kept and mallopt(_M_TRIM_THRESHOLD, KEPT_BYTES))
+
+
+def share_freed_memory() -> bool:
+    """Have the threads of this process use what others freed; False where there is no glibc.
+
+    By default there are eight heaps a core, and each keeps what the largest work of any thread
+    that it ever served took. To be called before there are many threads. Measured in sim_node
+    while scenes change and agents come and go: 196 to 207 MiB with it, 236 to 275 without.
+    """
+    try:
+        return bool(ctypes.CDLL(None).mallopt(_M_ARENA_MAX, ARENAS))
+    except (OSError, AttributeError):
+        return False
 
 
 def give_back_freed_memory() -> None:
