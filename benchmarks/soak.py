@@ -5,10 +5,11 @@
 
 Every round changes the scene, registers agents, renders, spawns and removes: in this process, or
 with `--node` in a node of its own, through ROS, beside a SAILenv client and a page that come and
-go. Prints resident memory, its part that is not of files, descriptors, threads and mapped shared
-memory of the process that simulates, and their slope over the second half of the rounds in the
-first scene, by least squares. Ends with status 1 if memory grows by more than 20 MiB an hour, or
-by more than 1 MiB a room of `--rooms`, or if anything else grows.
+go. Prints once a minute resident memory, its part that is not of files, descriptors, threads and
+mapped shared memory of the process that simulates: means of the rounds of that minute in the first
+scene. Ends with status 1 if after 20 minutes, or half of a shorter run, memory of its own rises by
+more than 3 % in any minute above that of the first one, or anything else grows; with `--rooms` if
+memory grows by more than 1 MiB a room over the second half, by least squares.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import os
 import socket
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -36,7 +37,8 @@ from sailenv_ros.authoring.room_rules.rule_files import rules_of
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
 
-MOST_MIB_PER_HOUR, MOST_MIB_PER_ROOM = 20.0, 1.0
+MOST_RISE, MOST_MIB_PER_ROOM = 0.03, 1.0
+SETTLED_MIN = 20.0
 KINDS = ("memory [MiB]", "own memory [MiB]", "descriptors", "threads", "segments")
 
 
@@ -56,27 +58,56 @@ def main() -> int:
     scenes = _with_rooms(options.scenes[0], range(*options.rooms)) if options.rooms else None
     endless = itertools.cycle(options.scenes) if scenes is None else iter(scenes)
     rows: list[tuple[float, ...]] = []
-    began = told = time.monotonic()
+    told = 0
+    began = time.monotonic()
     with (_node if options.node else _in_process)(options.scenes[0]) as (pid, work):
         for rounds, scene in enumerate(endless):
-            if (now := time.monotonic()) - began >= 60.0 * options.minutes:
+            minutes = (time.monotonic() - began) / 60.0
+            if minutes >= options.minutes:
                 break
+            if scenes is None and int(minutes) > told:
+                told = int(minutes)
+                _tell(told, rounds, _of_minute(rows, told - 1))
             work(scene, rounds)
             opened = _opened(pid)
             # Scenes differ in size, so each row is of the same one.
             if scene == options.scenes[0]:
-                rows.append(((now - began) / 3600.0 if scenes is None else rounds / 2.0, *opened))
-            if scenes or now - told > 30.0 or not rounds:
-                told = now
-                minutes = (now - began) / 60
-                print(f"{minutes:6.1f} min  round {rounds:>5}  {scene}: {_formatted(opened)}")
+                rows.append((minutes if scenes is None else rounds / 2.0, *opened))
+            if scenes is not None:
+                _tell(minutes, rounds, opened, scene)
             time.sleep(options.pause)
+    print(f"{rounds + 1} rounds")
+    return _judge_rooms(rows) if scenes is not None else _judge_minutes(rows, options.minutes)
+
+
+def _tell(minutes: float, rounds: int, opened: Sequence[float], scene: str = "") -> None:
+    print(f"{minutes:6.1f} min  round {rounds:>5}  {scene} {_formatted(opened)}", flush=True)
+
+
+def _of_minute(rows: list[tuple[float, ...]], minute: int) -> list[float]:
+    """Return the means of a minute; of the row before where a round took longer."""
+    within = [row for row in rows if int(row[0]) == minute] or rows[-1:]
+    return [float(mean) for mean in np.mean([row[1:] for row in within], axis=0)]
+
+
+def _judge_rooms(rows: list[tuple[float, ...]]) -> int:
     late = np.array(rows[len(rows) // 2 :])
     slopes = [float(np.polyfit(late[:, 0], late[:, 1 + k], 1)[0]) for k in range(len(KINDS))]
-    growth = late[-1, 3:] - late[0, 3:]
-    unit, most = ("hour", MOST_MIB_PER_HOUR) if scenes is None else ("room", MOST_MIB_PER_ROOM)
-    print(f"{rounds + 1} rounds; per {unit} over the second half: {_formatted(slopes)}")
-    return int(slopes[0] > most or bool((growth > 0).any()))
+    print(f"per room over the second half: {_formatted(slopes)}")
+    return int(slopes[0] > MOST_MIB_PER_ROOM or bool((late[-1, 3:] > late[0, 3:]).any()))
+
+
+def _judge_minutes(rows: list[tuple[float, ...]], minutes: float) -> int:
+    first = int(min(SETTLED_MIN, minutes / 2.0))
+    late = np.array([_of_minute(rows, n) for n in range(first, max(first + 1, int(minutes)))])
+    own = late[:, 1]
+    rise, grown = float(own.max() / own[0] - 1.0), late[-1, 2:] > late[0, 2:] + 1.0
+    least, most = own.min(), own.max()
+    print(
+        f"from minute {first}: own memory {least:.1f} to {most:.1f} MiB, at most {rise:+.1%} "
+        f"above the first; grown: {', '.join(np.array(KINDS[2:])[grown]) or 'nothing else'}"
+    )
+    return int(rise > MOST_RISE or bool(grown.any()))
 
 
 def _with_rooms(first: str, seeds: range) -> list[str]:
@@ -173,7 +204,7 @@ def _opened(pid: int) -> tuple[float, ...]:
     )
 
 
-def _formatted(values: tuple[float, ...] | list[float]) -> str:
+def _formatted(values: Sequence[float]) -> str:
     return ", ".join(f"{kind} {value:.1f}" for kind, value in zip(KINDS, values, strict=True))
 
 
