@@ -172,6 +172,18 @@ def test_a_rig_is_one_body_with_fixed_cameras() -> None:
         np.testing.assert_allclose(product, camera.world_from_camera, atol=1e-12)
 
 
+def test_a_rig_of_a_name_that_was_used_before_is_told() -> None:
+    """Also at the instant at which the one before was told last, as in a simulator that waits."""
+    node = FakeNode()
+    tree = TfTree(node)  # type: ignore[arg-type]  # all that it uses of a node
+    rig = (AgentSpec(name="rig"), AgentSpec(name="rig/left", extrinsics=Pose()))
+    for agents in (rig, (), rig):
+        tree.set_agents(agents)
+        if agents:
+            tree.publish("rig/left", Pose(), Time(sec=4))
+    assert [m.transforms[0].child_frame_id for m in node.sent["/tf"]] == ["rig", "rig"]
+
+
 def test_what_is_sent_is_a_tf_message_of_ros_2() -> None:
     """By Jazzy's own definition of the type: it holds the transforms, there and back as CDR."""
     node = FakeNode()

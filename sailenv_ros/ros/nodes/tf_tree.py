@@ -97,7 +97,10 @@ class TfTree:
         if extrinsics == self._extrinsics:
             return
         self._extrinsics = extrinsics
-        self._bodies = frozenset(map(body_of, extrinsics))
+        with self._telling:
+            self._bodies = frozenset(map(body_of, extrinsics))
+            told = self._told_bodies.items()
+            self._told_bodies = {body: at for body, at in told if body in self._bodies}
         self._static = {name: fixed_transforms(name, pose) for name, pose in extrinsics.items()}
         every = [transform for listed in self._static.values() for transform in listed]
         # One latched message holds them all: a reader that comes late gets the last one alone.
@@ -116,9 +119,10 @@ class TfTree:
             pose = Pose.from_matrix(pose.matrix() @ invert(extrinsics.matrix()))
         with self._telling:
             at = (stamp.sec, stamp.nanosec)
-            if body in self._bodies and self._told_bodies.get(body) == at:
-                return
-            self._told_bodies[body] = at
+            if body in self._bodies:
+                if self._told_bodies.get(body) == at:
+                    return
+                self._told_bodies[body] = at
             header = Header(stamp=stamp, frame_id=WORLD_FRAME_ID)
             self._moving.publish(TFMessage(transforms=[transform_of(pose, header, body)]))
 
