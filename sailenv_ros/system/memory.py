@@ -43,9 +43,6 @@ LARGEST_KEPT_OF_SCENES_BYTES = 2**20
 KEPT_BYTES = 256 * 2**20
 """Free memory at the heap's end that is kept."""
 
-ARENAS = 2
-"""Heaps of a process whose threads share what they free."""
-
 
 _decided = False
 """Whether `keep_freed_memory` was called."""
@@ -78,14 +75,14 @@ def keep_freed_memory(*, many_scenes: bool = False) -> bool:
 
 
 def share_freed_memory() -> bool:
-    """Have the threads of this process use what others freed; False where there is no glibc.
+    """Have all threads of this process use one heap; False where the C library is not glibc.
 
-    By default there are eight heaps a core, and each keeps what the largest work of any thread
-    that it ever served took. To be called before there are many threads. Measured in sim_node
-    while scenes change and agents come and go: 196 to 207 MiB with it, 236 to 275 without.
+    By default there are up to eight heaps a core, and each keeps what the largest work of any
+    thread that it ever served took. To be called before there are threads. Measured in sim_node
+    while scenes change and agents come and go: 195 to 205 MiB with it, 236 to 275 without.
     """
     try:
-        return bool(ctypes.CDLL(None).mallopt(_M_ARENA_MAX, ARENAS))
+        return bool(ctypes.CDLL(None).mallopt(_M_ARENA_MAX, 1))
     except (OSError, AttributeError):
         return False
 

@@ -165,12 +165,12 @@ def test_it_greets_with_one_line(standing: NodeProcess) -> None:
 
 
 def test_its_threads_share_memory(standing: NodeProcess) -> None:
-    """Twenty threads had fifteen heaps, 64 MiB of addresses each, beside the first."""
+    """Else they have a dozen heaps, which begin at multiples of 64 MiB, beside the first."""
     maps = Path(f"/proc/{standing.pid}/maps").read_text().splitlines()
     ranges = [line.split()[0].split("-") for line in maps if len(line.split()) == 5]
     begins = [int(begin, 16) for begin, _ in ranges]
     heaps = [begin for begin in begins if begin % 2**26 == 0]
-    assert 1 <= len(heaps) <= 4
+    assert len(heaps) <= 2
 
 
 def test_parameters_come_from_the_shipped_file_and_quality_of_service_from_overrides() -> None:

@@ -31,7 +31,7 @@ from sailenv_ros.ros.nodes.lifecycle import StopRequest
 from sailenv_ros.ros.nodes.parameter_table import NAMESPACE
 from sailenv_ros.ros.nodes.plain_arguments import plain_parameters
 from sailenv_ros.simulation.background_build import BuildStep
-from sailenv_ros.system.memory import keep_freed_memory, share_freed_memory
+from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.presence import SimulatorLock, checked_domain
 
 __all__ = ["main"]
@@ -85,7 +85,6 @@ def _run(arguments: list[str], stop: StopRequest, shown: logging.Handler) -> int
             sys.executable, [sys.executable, "-m", "sailenv_ros.ros.nodes.sim_node", *for_node]
         )
     keep_freed_memory()
-    share_freed_memory()
     # After that ROS is there, and a program that waits for this simulator may find it.
     with SimulatorLock(checked_domain(os.environ.get("ROS_DOMAIN_ID") or 0), NAMESPACE):
         simulation = load_simulation(parameters, stop)

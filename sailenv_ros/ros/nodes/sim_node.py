@@ -45,7 +45,7 @@ from sailenv_ros.ros.nodes.services import SimulatorServices
 from sailenv_ros.ros.nodes.simulation_interfaces import standard_interfaces
 from sailenv_ros.ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import Simulation
-from sailenv_ros.system.memory import keep_freed_memory, share_freed_memory
+from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.presence import (
     ClockLock,
     SimulatorLock,
@@ -195,7 +195,6 @@ def run(arguments: list[str], stop: StopRequest, hosted: Hosted | None = None) -
 def _run(arguments: list[str], stop: StopRequest, hosted: Hosted | None) -> int:
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     keep_freed_memory()
-    share_freed_memory()
     transport = use_shared_memory_profile()
     context = Context()
     try:

@@ -151,8 +151,8 @@ with tempfile.NamedTemporaryFile() as told:
 
 
 def test_threads_share_what_they_free() -> None:
-    """Each thread of a node kept what its largest work took: 40 MiB more while agents come."""
-    assert int(run(_HEAPS, "shared")) == 2
+    """Else each keeps what its largest work took: 40 MiB more in a node whose agents come and go."""
+    assert int(run(_HEAPS, "shared")) == 1
     assert int(run(_HEAPS, "as it is")) > 4
 
 
