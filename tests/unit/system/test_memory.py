@@ -151,7 +151,7 @@ with tempfile.NamedTemporaryFile() as told:
 
 
 def test_threads_share_what_they_free() -> None:
-    """Else each keeps what its largest work took: 40 MiB more in a node whose agents come and go."""
+    """Else each keeps what its largest work took: 40 MiB in a node whose agents come and go."""
     assert int(run(_HEAPS, "shared")) == 1
     assert int(run(_HEAPS, "as it is")) > 4
 
