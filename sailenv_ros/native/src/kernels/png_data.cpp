@@ -31,40 +31,42 @@ struct Code {
 };
 
 // Symbols below 256 are bytes, others RUN + the length of a run of the byte before.
-constexpr uint16_t RUN = 1024;
+constexpr uint16_t RUN = 256;
+constexpr int64_t SYMBOLS = RUN + LONGEST_RUN + 1;
 
 class Bits {
 public:
     Bits(uint8_t* out, uint8_t* end) : out_(out), end_(end) {}
 
+    // At most 56 bits.
     void put(uint64_t bits, uint32_t length) {
         held_ |= bits << count_;
         count_ += length;
-        if (count_ >= 32) spill();
+        spill();
     }
     // Writes what is left, filled up to a byte; returns where the stream ends, null if beyond.
     uint8_t* finish() {
-        while (count_ > 0) {
+        if (count_ > 0) {
             if (out_ >= end_) return nullptr;
             *out_++ = static_cast<uint8_t>(held_);
-            held_ >>= 8;
-            count_ -= std::min(count_, 8u);
         }
         return full_ ? nullptr : out_;
     }
 
 private:
+    // Writes whole bytes. It always writes, as whether there are enough cannot be foreseen.
     void spill() {
         if (end_ - out_ < 8) {
             full_ = true;
             held_ = count_ = 0;
             return;
         }
-        const uint32_t low = static_cast<uint32_t>(held_);
-        for (int byte = 0; byte < 4; byte++) out_[byte] = static_cast<uint8_t>(low >> 8 * byte);
-        out_ += 4;
-        held_ >>= 32;
-        count_ -= 32;
+        uint8_t* out = out_;
+        const uint64_t held = held_;
+        for (int byte = 0; byte < 8; byte++) out[byte] = static_cast<uint8_t>(held >> 8 * byte);
+        out_ += count_ / 8;
+        held_ >>= count_ & ~7u;
+        count_ &= 7;
     }
 
     uint8_t* out_;
@@ -148,22 +150,32 @@ int run_code(int64_t length) {
 }
 
 // One block of symbols (RFC 1951, 3.2.7). The only distance is 1.
-void put_block(Bits& bits, const uint16_t* symbols, int64_t count, bool last) {
+void put_block(Bits& stream, const uint16_t* symbols, int64_t count, bool last) {
+    Bits bits = stream;  // what is written cannot lie in it
+    // Of neighbours in tables of their own: equal ones need not wait for each other.
+    uint32_t tables[4][SYMBOLS] = {};
+    int64_t counted = 0;
+    for (; counted + 4 <= count; counted += 4) {
+        for (int k = 0; k < 4; k++) tables[k][symbols[counted + k]]++;
+    }
+    for (; counted < count; counted++) tables[0][symbols[counted]]++;
     uint32_t counts[LITERALS] = {};
-    for (int64_t place = 0; place < count; place++) {
-        const uint16_t symbol = symbols[place];
-        counts[symbol < RUN ? symbol : 257 + run_code(symbol - RUN)]++;
+    for (int64_t symbol = 0; symbol < SYMBOLS; symbol++) {
+        const uint32_t found =
+            tables[0][symbol] + tables[1][symbol] + tables[2][symbol] + tables[3][symbol];
+        if (found) counts[symbol < RUN ? symbol : 257 + run_code(symbol - RUN)] += found;
     }
     counts[END_OF_BLOCK]++;
     Code codes[LITERALS];
     make_codes(counts, LITERALS, 15, codes);
-    Code whole[LONGEST_RUN + 1] = {};  // of runs: code, rest and distance in one
+    Code whole[SYMBOLS] = {};  // of runs: code, rest and distance in one
+    std::copy_n(codes, RUN, whole);
     for (int64_t length = 4; length <= LONGEST_RUN; length++) {
         const int code = run_code(length);
         const Code own = codes[257 + code];
         const uint32_t rest = static_cast<uint32_t>(length - RUN_FIRST[code]);
-        whole[length] = {own.bits | rest << own.length,
-                         own.length + static_cast<uint32_t>(RUN_BITS[code]) + 1};
+        whole[RUN + length] = {own.bits | rest << own.length,
+                               own.length + static_cast<uint32_t>(RUN_BITS[code]) + 1};
     }
     uint32_t length_counts[19] = {};
     length_counts[1]++;  // of the distance
@@ -179,12 +191,31 @@ void put_block(Bits& bits, const uint16_t* symbols, int64_t count, bool last) {
     for (const int symbol : ORDER) bits.put(lengths[symbol].length, 3);
     for (const Code& code : codes) bits.put(lengths[code.length].bits, lengths[code.length].length);
     bits.put(lengths[1].bits, lengths[1].length);
-    for (int64_t place = 0; place < count; place++) {
-        const uint16_t symbol = symbols[place];
-        const Code code = symbol < RUN ? codes[symbol] : whole[symbol - RUN];
-        bits.put(code.bits, code.length);
+    // No code is longer than 21 bits: two at once.
+    int64_t place = 0;
+    for (; place + 1 < count; place += 2) {
+        const Code one = whole[symbols[place]], other = whole[symbols[place + 1]];
+        bits.put(one.bits | static_cast<uint64_t>(other.bits) << one.length,
+                 one.length + other.length);
     }
+    if (place < count) bits.put(whole[symbols[place]].bits, whole[symbols[place]].length);
     bits.put(codes[END_OF_BLOCK].bits, codes[END_OF_BLOCK].length);
+    stream = bits;
+}
+
+uint64_t eight_bytes(const uint8_t* data) {
+    uint64_t bytes;
+    memcpy(&bytes, data, 8);
+    return bytes;
+}
+
+// Whether one of five bytes is like the one before it, and the next three are so, too.
+bool has_run(const uint8_t* data) {
+    constexpr uint64_t FIVE = 0xffffffffff;
+    const uint64_t differs = eight_bytes(data) ^ eight_bytes(data - 1);
+    const uint64_t two = differs | differs >> 8;
+    const uint64_t four = (two | two >> 16) | ~FIVE;  // a byte is 0 where four of `differs` are
+    return ((four - 0x0101010101010101u) & ~four & 0x8080808080808080u) != 0;
 }
 
 // Bytes to symbols; returns how many bytes were taken, and in `count` how many symbols were made.
@@ -193,6 +224,13 @@ int64_t take_symbols(const uint8_t* data, int64_t first, int64_t size, uint16_t*
     int64_t place = first;
     count = 0;
     while (place < size && count < BLOCK_SYMBOLS) {
+        if (place > 0 && size - place >= 8 && count + 8 <= BLOCK_SYMBOLS &&
+            !has_run(data + place)) {
+            for (int k = 0; k < 8; k++) symbols[count + k] = data[place + k];
+            count += 5;
+            place += 5;
+            continue;
+        }
         if (place > 0 && size - place >= 4) {
             const uint8_t before = data[place - 1];
             uint32_t next;
