@@ -34,16 +34,20 @@ class MovableObjects:
         Of each.
     near : list of list of int
         Which others stand near each.
+    around : list of tuple of Place
+        Place of each, and of those that stand near it; the same tuples as before where these are.
     """
 
     def __init__(self) -> None:
         self.things: list[PlacedObject] = []
         self.places: list[Place] = []
         self.near: list[list[int]] = []
+        self.around: list[tuple[Place, ...]] = []
         self._instances: tuple[DrawnInstance, ...] | None = None
         self._rows = np.zeros(0, np.intp)
         self._poses, self._moving = np.zeros((0, 4, 4)), np.zeros(0, np.bool_)
         self._centres, self._radii = np.zeros((0, 3)), np.zeros(0)
+        self._close = np.zeros((0, 0), np.bool_)
 
     def follow(self, snapshot: WorldSnapshot) -> None:
         """Take in where things are."""
@@ -56,7 +60,9 @@ class MovableObjects:
             # No pose is that of before.
             self._poses, self._moving = np.full((count, 4, 4), np.nan), np.zeros(count, np.bool_)
             self._centres, self._radii = np.zeros((count, 3)), np.zeros(count)
+            self._close = np.zeros((count, count), np.bool_)
             self.things, self.places = [], []
+            self.near, self.around = [[] for _ in range(count)], [() for _ in range(count)]
         poses = steady_poses(snapshot.world_from_body[self._rows])
         moving = snapshot.moving[self._rows]
         moved = (poses != self._poses).any(axis=(1, 2))
@@ -75,12 +81,19 @@ class MovableObjects:
             self.things[number : number + 1] = [thing]
             self.places[number : number + 1] = [thing.place]
             self._centres[number], self._radii[number] = thing.ball
-        if changed or anew:
-            self.near = self._neighbours()
+        if changed:
+            self._take_in_neighbours(changed)
 
-    def _neighbours(self) -> list[list[int]]:
-        """Return which others stand near each."""
-        apart = np.linalg.norm(self._centres[:, None] - self._centres, axis=2)
-        close: NDArray[np.bool_] = apart < self._radii[:, None] + self._radii + NEAR_M
-        np.fill_diagonal(close, False)
-        return [np.flatnonzero(row).tolist() for row in close]
+    def _take_in_neighbours(self, changed: list[int]) -> None:
+        """Find which others stand near those that have changed, and the reverse."""
+        moved = np.array(changed, np.intp)
+        apart = np.linalg.norm(self._centres[moved, None] - self._centres, axis=2)
+        close: NDArray[np.bool_] = apart < self._radii[moved, None] + self._radii + NEAR_M
+        close[np.arange(len(moved)), moved] = False
+        touched = np.zeros(len(self.near), np.bool_)
+        touched[moved] = True
+        touched |= np.logical_or.reduce(close | self._close[moved], axis=0)
+        self._close[moved], self._close[:, moved] = close, close.T
+        for number in np.flatnonzero(touched).tolist():
+            near = self.near[number] = np.flatnonzero(self._close[number]).tolist()
+            self.around[number] = (self.places[number], *(self.places[other] for other in near))

@@ -16,11 +16,12 @@ from sailenv_ros.light.relight.found_light import KnownLight
 from sailenv_ros.light.relight.movable_objects import MovableObjects
 from sailenv_ros.light.relight.object_light import (
     ObjectLighting,
+    Place,
     PlacedObject,
     SurfacePoints,
     near_changes,
 )
-from sailenv_ros.light.relight.quality import FINE, QUICK
+from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.types.baked_light import ObjectLight
@@ -102,7 +103,7 @@ class ObjectLights:
             return self._light
         self._seen = instances, seen
         self._movable.follow(snapshot)
-        things, places, near = self._movable.things, self._movable.places, self._movable.near
+        things, near = self._movable.things, self._movable.near
         if of != self._of:
             if self._of[:1] != (scene,):
                 self._lightings, self._still = {}, scene.found.objects
@@ -112,21 +113,23 @@ class ObjectLights:
         affected = near_changes(scene, things, changes, FAR_M) if rough else frozenset()
         known: dict[int, KnownLight] = {}
         asked = []
+        every = tuple(change.key for change in changes)
         for place in chosen:
-            thing = things[place]
+            thing, around = things[place], self._movable.around[place]
             quality = QUICK if thing.moves else FINE
             counted = () if rough and thing.id not in affected else tuple(changes)
-            moved = tuple(change.key for change in counted)
-            key = moved, quality, places[place], *(places[other] for other in near[place])
-            before = [all_.get(thing.id) for all_ in (self._known, self._still)]
-            same = next((one for one in before if one is not None and one[0] == key), None)
-            if same is not None:
+            moved = every if counted else ()
+            same = self._known.get(thing.id)
+            if same is None or not _is_of(same, moved, quality, around):
+                same = self._still.get(thing.id)
+            if same is not None and _is_of(same, moved, quality, around):
                 known[thing.id] = same
                 continue
+            key = moved, quality, around
             if moved not in self._lightings:
                 self._lightings[moved] = ObjectLighting(scene, counted, self.points)
-            around = [things[other] for other in near[place]]
-            asked.append((self._lightings[moved], thing, around, quality, key))
+            others = [things[other] for other in near[place]]
+            asked.append((self._lightings[moved], thing, others, quality, key))
         if known != self._known or asked:
             with ExitStack() as opened:
                 # To begin a thread takes longer than the light on what moves.
@@ -140,6 +143,19 @@ class ObjectLights:
             self._still |= {id_: one for id_, one in known.items() if not one[0][0]}
             self._light = {id_: light for id_, (_, light) in known.items()}
         return self._light
+
+
+def _is_of(
+    known: KnownLight, moved: tuple[object, ...], quality: Quality, around: tuple[Place, ...]
+) -> bool:
+    """Return whether light is that of these changes, this quality, and objects at these places."""
+    of_changes, of_quality, of_places = known[0]
+    # The same objects, as a rule: to compare what is in them takes a hundred times as long.
+    return (
+        of_quality is quality
+        and (of_places is around or of_places == around)
+        and of_changes == moved
+    )
 
 
 def _chosen(things: list[PlacedObject]) -> list[int]:

@@ -187,5 +187,12 @@ def test_what_stands_still_is_the_same_object_from_snapshot_to_snapshot() -> Non
         True, False, True, True,
     ]  # fmt: skip
     assert followed.places == fresh.places == [thing.place for thing in fresh.things]
-    assert followed.near == fresh.near
-    assert followed.near != [[1], [0, 2], [1, 3], [2]]
+    assert followed.near == fresh.near == [[], [2, 3], [1, 3], [1, 2]]
+    assert followed.around == fresh.around
+    around = list(followed.around)
+    followed.follow(moved(later, 4, 0.701))
+    # The last one has moved, and stands near all but the first.
+    assert [one is other for one, other in zip(around, followed.around, strict=True)] == [
+        True, False, False, False,
+    ]  # fmt: skip
+    assert followed.around[1] == tuple(followed.places[place] for place in (1, 2, 3))
