@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+import operator
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from sailenv_ros.authoring.viewpoints.view_scene import (
@@ -17,7 +19,7 @@ from sailenv_ros.authoring.viewpoints.view_scene import (
 )
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.space.free_space import BodySize
-from sailenv_ros.types.geometry import Pose, vector_angle_deg
+from sailenv_ros.types.geometry import Pose
 
 __all__ = ["FreeView", "free_view", "poses_in_free_space"]
 
@@ -54,10 +56,43 @@ class FreeView(RuleSettings):
     floor_m: float = Field(default=0.0, description="height of the floor in the world [m]")
 
 
+class _Look(NamedTuple):
+    """A place to look from [m], and whither [deg]."""
+
+    position_m: tuple[float, float, float]
+    pitch_deg: float
+    yaw_deg: float
+
+    @property
+    def pose(self) -> Pose:
+        """Of the camera."""
+        return Pose.from_rpy_deg(self.position_m, (0.0, self.pitch_deg, self.yaw_deg))
+
+    @property
+    def forward(self) -> tuple[float, float, float]:
+        """Unit vector along the optical axis."""
+        pitch, yaw = math.radians(self.pitch_deg), math.radians(self.yaw_deg)
+        level = math.cos(pitch)
+        return level * math.cos(yaw), level * math.sin(yaw), -math.sin(pitch)
+
+
 def poses_in_free_space(
     scene: ViewScene, settings: FreeView, random: np.random.Generator
 ) -> Iterator[Pose]:
     """Yield random poses at places where a body of that height and clearance can stand.
+
+    Raises
+    ------
+    InvalidRequest
+        If a range ends before it begins, or the camera is not above the floor.
+    """
+    return (look.pose for look in _looks_in_free_space(scene, settings, random))
+
+
+def _looks_in_free_space(
+    scene: ViewScene, settings: FreeView, random: np.random.Generator
+) -> Iterator[_Look]:
+    """Yield random looks; see `poses_in_free_space`.
 
     Raises
     ------
@@ -84,7 +119,7 @@ def poses_in_free_space(
         height = float(random.uniform(low, high))
         pitch = float(random.uniform(*settings.pitch_deg))
         yaw = float(random.uniform(-180.0, 180.0))
-        yield Pose.from_rpy_deg((x, y, floor + height), (0.0, pitch, yaw))
+        yield _Look((x, y, floor + height), pitch, yaw)
 
 
 @camera_rule("free_view", FreeView)
@@ -93,16 +128,19 @@ def free_view(
 ) -> list[CameraView]:
     """Look from free space at a height, nothing too near, several objects in view."""
     chosen: list[CameraView] = []
-    forwards: list[NDArray[np.float64]] = []
-    poses = poses_in_free_space(scene, settings, random)
-    for _, pose in zip(range(settings.attempts * count), poses, strict=False):
-        forward = pose.matrix()[:3, 0]
+    taken: list[tuple[tuple[float, float, float], tuple[float, float, float]]] = []
+    # Where a room is nearly full most are beside one that is chosen: these are to cost little.
+    most_alike = math.cos(math.radians(settings.apart_deg)) if settings.apart_deg else math.inf
+    looks = _looks_in_free_space(scene, settings, random)
+    for look in itertools.islice(looks, settings.attempts * count):
+        forward = look.forward
         if any(
-            math.dist(pose.position_m, other.pose.position_m) < settings.apart_m
-            and vector_angle_deg(forward, other_forward) < settings.apart_deg
-            for other, other_forward in zip(chosen, forwards, strict=True)
+            math.dist(look.position_m, position) < settings.apart_m
+            and sum(map(operator.mul, forward, other)) > most_alike
+            for position, other in taken
         ):
             continue
+        pose = look.pose
         depth = scene.depth_m(pose)
         # NaN is nearer than the near plane.
         if not (depth >= settings.nearest_m).all():
@@ -112,7 +150,7 @@ def free_view(
         if scene.filled(pose) < settings.filled:
             continue
         chosen.append(CameraView(pose=pose))
-        forwards.append(forward)
+        taken.append((look.position_m, forward))
         if len(chosen) == count:
             break
     return chosen

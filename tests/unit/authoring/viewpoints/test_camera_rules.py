@@ -8,12 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
 from sailenv_ros import Simulation
 from sailenv_ros.authoring.viewpoints import CameraView, camera_rules
 from sailenv_ros.errors import InvalidEntry, InvalidRequest, UnknownName
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
+from sailenv_ros.types.geometry import Pose
 
 YARD = """
 version: 1
@@ -138,6 +140,24 @@ def test_free_views_keep_height_pitch_and_distance(simulation: Simulation) -> No
             away = math.dist(first.pose.position_m, second.pose.position_m)
             cosine = first.pose.matrix()[:3, 0] @ second.pose.matrix()[:3, 0]
             assert away >= 0.5 or cosine <= math.cos(math.radians(40.0)) + 1e-9
+
+
+def test_free_views_beside_others_cost_no_pose(
+    simulation: Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where all looks are like the one that is chosen, the others are told by numbers alone."""
+    made: list[Pose] = []
+    original = Pose.from_rpy_deg
+
+    def counted(position_m: ArrayLike, rpy_deg: ArrayLike) -> Pose:
+        made.append(original(position_m, rpy_deg))
+        return made[-1]
+
+    monkeypatch.setattr(Pose, "from_rpy_deg", counted)
+    alike = {"apart_m": 100.0, "apart_deg": 180.0, "objects": 0, "nearest_m": 0.0}
+    found = simulation.sample_cameras("free_view", 5, attempts=40, **alike)
+    assert len(found) == 1
+    assert made == [found[0].pose]
 
 
 def test_few_views_show_everything(simulation: Simulation) -> None:
