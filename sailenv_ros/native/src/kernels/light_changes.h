@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "lanes.h"
 #include "light_sampling.h"
 #include "rays.h"
 
@@ -26,29 +28,55 @@ constexpr float LEAST_OF_LIGHT = 0.02f;
 struct SeenChanges {
     static constexpr int64_t MOST = 128;
     const RayInstance* instance[MOST];
+    float balls[MOST / WIDTH][4][WIDTH];  // around them: x, y, z and radius of so many at a time
     int64_t count = 0;
 
     void add(const RayInstance& i) {
-        if (count < MOST) instance[count] = &i;
+        if (count < MOST) {
+            float (*group)[WIDTH] = balls[count / WIDTH];
+            if (count % WIDTH == 0) memset(group, 0, sizeof balls[0]);
+            for (int k = 0; k < 4; k++) group[k][count % WIDTH] = i.sphere[k];
+            instance[count] = &i;
+        }
         count++;
     }
 };
 
-// Calls with each of them.
+// Which of some balls a ray passes through before `length`; the arithmetic is `ray_passes_ball`'s.
+LANES_INLINE uint32_t passed_balls(const float (*balls)[WIDTH], const Ray& r, float length) {
+    const f8 x = load(balls[0]) - r.o[0], y = load(balls[1]) - r.o[1], z = load(balls[2]) - r.o[2];
+    const float d2 = r.d[0] * r.d[0] + r.d[1] * r.d[1] + r.d[2] * r.d[2];
+    f8 t = (x * r.d[0] + y * r.d[1] + z * r.d[2]) / d2;
+    t = t < 0.0f ? splat(0.0f) : t > length ? splat(length) : t;
+    const f8 fx = x - t * r.d[0], fy = y - t * r.d[1], fz = z - t * r.d[2];
+    const f8 reach = load(balls[3]);
+    return lane_bits(fx * fx + fy * fy + fz * fz <= reach * reach);
+}
+
+// Calls with each of them whose ball a ray passes through before `length`, in their order.
 template <class Use>
-static inline void for_each_seen(const RayScene& s, const SeenChanges& seen, const Use& use) {
+static inline void for_each_passed(const RayScene& s, const SeenChanges& seen, const Ray& r,
+                                   float length, const Use& use) {
     if (seen.count > SeenChanges::MOST) {
-        for (int64_t k = 0; k < s.changed_count; k++) use(s.changed[k]);
-    } else {
-        for (int64_t k = 0; k < seen.count; k++) use(*seen.instance[k]);
+        for (int64_t k = 0; k < s.changed_count; k++) {
+            if (ray_passes_ball(s.changed[k], r, length)) use(s.changed[k]);
+        }
+        return;
+    }
+    for (int64_t first = 0; first < seen.count; first += WIDTH) {
+        uint32_t passed = passed_balls(seen.balls[first / WIDTH], r, length);
+        // Of the last ones there may be fewer.
+        if (seen.count - first < WIDTH) passed &= (1u << (seen.count - first)) - 1u;
+        for (; passed != 0; passed &= passed - 1) {
+            use(*seen.instance[first + __builtin_ctz(passed)]);
+        }
     }
 }
 
 // What a ray meets first, before and after; true if that is not the same.
 static inline bool meet_both(const RayScene& s, const SeenChanges& seen, const Ray& r, Hit& before,
                              Hit& after) {
-    for_each_seen(s, seen, [&](const RayInstance& i) {
-        if (!ray_passes_ball(i, r, ENDLESS)) return;
+    for_each_passed(s, seen, r, ENDLESS, [&](const RayInstance& i) {
         if (i.before) meet_instance(i, r, before);
         if (i.after) meet_instance(i, r, after);
     });
@@ -79,9 +107,9 @@ struct Stopped {
 static inline Stopped stopped(const RayScene& s, const SeenChanges& between, const Ray& r,
                               float length, bool whole) {
     bool by_before = false, by_after = false;
-    for_each_seen(s, between, [&](const RayInstance& i) {
+    for_each_passed(s, between, r, length, [&](const RayInstance& i) {
         if ((i.before ? by_before : true) && (i.after ? by_after : true)) return;
-        if (!ray_passes_ball(i, r, length) || !instance_occludes(i, r, length)) return;
+        if (!instance_occludes(i, r, length)) return;
         by_before |= i.before != 0;
         by_after |= i.after != 0;
     });
