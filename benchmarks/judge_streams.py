@@ -14,7 +14,7 @@ shuffled. `avalanche` trains its `Naive` on experiences that are made when they 
 `drift` gives simple statistics of frames to river's ADWIN as they come, see `SIGNALS`: a camera
 that walks, or stands, in one room, one drift at a time, which begins at a frame. `still` does so
 without any drift. ADWIN makes a test each 32 frames; its `delta`, the share of false alarms, is
-divided by the number of tests in 100,000 frames (Bonferroni). `memory` makes two frames of each
+divided by the number of tests of all statistics in 100,000 frames (Bonferroni). `memory` makes two frames of each
 episode of `home`, or of the first few in each room, and tells the memory of the process after each
 room, and mean and most of each tour through all rooms that begins after 10,000 frames; then those
 of the last tour in another process, which has not played the ones before.
@@ -63,7 +63,7 @@ SIGNALS = ("red", "green", "blue", "red / blue", APPEARS)
 """Mean colours of a picture, and the share of its pixels that are of the category."""
 
 CLOCK, FRAMES = 32, 100_000
-DELTA = 0.002 / (FRAMES / CLOCK)
+DELTA = 0.002 / (FRAMES / CLOCK * len(SIGNALS))
 """ADWIN's own settings are 32 and 0.002."""
 
 PLAIN: dict[str, Any] = {
