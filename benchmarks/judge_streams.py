@@ -14,10 +14,10 @@ shuffled. `avalanche` trains its `Naive` on experiences that are made when they 
 `drift` gives simple statistics of frames to river's ADWIN as they come, see `SIGNALS`: a camera
 that walks, or stands, in one room, one drift at a time, which begins at a frame. `still` does so
 without any drift. ADWIN makes a test each 32 frames; its `delta`, the share of false alarms, is
-divided by the number of tests of all statistics in 100,000 frames (Bonferroni). `memory` makes two frames of each
-episode of `home`, or of the first few in each room, and tells the memory of the process after each
-room, and mean and most of each tour through all rooms that begins after 10,000 frames; then those
-of the last tour in another process, which has not played the ones before.
+divided by the number of tests of all statistics in 100,000 frames (Bonferroni). `memory` makes two
+frames of each episode of `home`, or of the first few in each room, and tells the memory of the
+process after each room, and mean and most of each tour through all rooms that begins after 10,000
+frames; then those of the last tour in another process, which has not played the ones before.
 
 Needed are `river`, `torch` and `avalanche-lib` beside this project, in an environment of their own.
 """
