@@ -23,9 +23,9 @@ __all__ = [
     "forget_scenes",
     "give_back_freed_memory",
     "keep_freed_memory",
-    "share_freed_memory",
     "no_memory",
     "require_address_space",
+    "share_freed_memory",
 ]
 
 Result = TypeVar("Result")

@@ -32,7 +32,6 @@ __all__ = [
     "pose_angle_deg",
     "quat_xyzw_from_rpy_deg",
     "rpy_deg_from_quat_xyzw",
-    "vector_angle_deg",
 ]
 
 Matrix = NDArray[np.float64]
@@ -331,11 +330,6 @@ def _rotation_matrix(quat_xyzw: Quaternion) -> Matrix:
         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ])  # fmt: skip
-
-
-def vector_angle_deg(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
-    """Return the angle between two unit vectors [deg], 0 to 180."""
-    return math.degrees(math.acos(min(1.0, max(-1.0, float(first @ second)))))
 
 
 def matrix_angle_deg(rotation: Matrix) -> float:

@@ -119,10 +119,9 @@ class ObjectLights:
             quality = QUICK if thing.moves else FINE
             counted = () if rough and thing.id not in affected else tuple(changes)
             moved = every if counted else ()
-            same = self._known.get(thing.id)
-            if same is None or not _is_of(same, moved, quality, around):
-                same = self._still.get(thing.id)
-            if same is not None and _is_of(same, moved, quality, around):
+            before = self._known.get(thing.id), self._still.get(thing.id)
+            fitting = (one for one in before if one and _is_of(one, moved, quality, around))
+            if (same := next(fitting, None)) is not None:
                 known[thing.id] = same
                 continue
             key = moved, quality, around
