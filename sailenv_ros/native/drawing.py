@@ -27,6 +27,7 @@ from sailenv_ros.native.render_types import (
     address,
     record,
 )
+from sailenv_ros.native.traced_types import TRACED_INSTANCE, TRACED_SCENE
 
 __all__ = ["ROW_PADDING", "AmodalDrawing", "Drawing", "DrawnPoses", "mip_chain", "structure_sizes"]
 
@@ -312,6 +313,8 @@ def structure_sizes() -> dict[str, tuple[int, int]]:
         "cube_face": CUBE_FACE,
         "lens_tiles": LENS_TILES,
         "triangle_place": TRIANGLE_PLACE,
+        "traced_instance": TRACED_INSTANCE,
+        "traced_scene": TRACED_SCENE,
     }
     sizes = np.zeros(len(ours), np.int64)
     _STRUCTURES(sizes)

@@ -114,6 +114,7 @@ LIGHT = structure(
     ("reflection_scale layers_per_roughness", "<f4"),
     ("reflection_points_at reflection_table_at", ADDRESS),
     ("room_low room_high", "<f4", 3),
+    ("traced_at", ADDRESS),
     ("outside_id", "<i4"),
     ("outside_radiance", "<f4"),
 )

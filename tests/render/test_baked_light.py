@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sailenv_ros.render.contract import RenderRequest
+from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight, SunEdges
 from sailenv_ros.types.geometry import Pose
@@ -184,8 +184,13 @@ def test_polished_metal_mirrors_what_is_where_it_stands(render: Render) -> None:
     np.testing.assert_allclose(middle, 0.8 * np.array([0.6, 0.1, 0.1]), rtol=0.1, atol=0.04)
 
 
-def test_where_less_light_arrives_less_of_the_room_is_mirrored(render: Render) -> None:
-    """In proportion to the light of the room's middle; where more arrives, the room as it is."""
+def test_where_less_light_arrives_less_of_the_room_is_mirrored(
+    render: Render, renderer: RenderBackend
+) -> None:
+    """In proportion to the light of the room's middle; where more arrives, the room as it is.
+
+    That is so of pictures of the room. What rays meet is seen as it is, whatever arrives.
+    """
     # As thick as this it is no flat mirror, which would show what stands before it.
     mirror = model_of(
         box_mesh((0.5, 8.0, 8.0)), base_colour=(1, 1, 1, 1), metallic=1.0, roughness=0.0
@@ -206,6 +211,9 @@ def test_where_less_light_arrives_less_of_the_room_is_mirrored(render: Render) -
 
     np.testing.assert_allclose(seen(0.5), 0.8 * ALBEDO, rtol=0.1)
     np.testing.assert_allclose(seen(0.4), seen(0.5), rtol=0.03)
+    if isinstance(renderer, NativeRenderer):
+        np.testing.assert_allclose(seen(0.04), seen(0.5), rtol=0.06)
+        return
     # The wall fills the half space before the mirror, and a part of what is amidst the probes sees.
     dim, dimmer = seen(0.08), seen(0.04)
     assert (dim < 0.8 * seen(0.5)).all()

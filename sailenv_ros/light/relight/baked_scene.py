@@ -18,7 +18,7 @@ from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.relight.baked_texels import BakedTexels, baked_texels, patch_means
 from sailenv_ros.light.relight.found_light import FoundLight
-from sailenv_ros.light.relight.ray_shapes import Shape, shape_of
+from sailenv_ros.rays.solid_models import SolidModel, solid_model
 from sailenv_ros.rays.light_rays import glass_of
 from sailenv_ros.rays.model_triangles import triangles_of
 from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
@@ -115,7 +115,7 @@ class BakedScene:
             for drawn in contents.instances
             if drawn.instance.id in baked.charts and drawn.model.triangle_count
         }
-        self._shapes: dict[tuple[int, tuple[float, ...], int], tuple[object, Shape]] = {}
+        self._shapes: dict[tuple[int, tuple[float, ...], int], tuple[object, SolidModel]] = {}
         self.side = len(baked.layers[0].direct)
         geometry = static_geometry_of(_as_baked(baked, contents, tuple(self.drawn.values())))
         self.materials = geometry.materials
@@ -125,19 +125,19 @@ class BakedScene:
         with ThreadPoolExecutor(max(threads, 1)) as pool:
             list(pool.map(self.shape, self.drawn))
 
-    def shape(self, instance_id: int) -> Shape:
+    def shape(self, instance_id: int) -> SolidModel:
         """Return the shape of an instance that was baked."""
         drawn = self.drawn[instance_id]
         return self.shape_of(drawn.model, drawn.scale, self.baked.charts[instance_id].unwrapping)
 
     def shape_of(
         self, model: Model, scale: tuple[float, float, float], flat: Unwrapping | None
-    ) -> Shape:
+    ) -> SolidModel:
         """Return a model's shape; each is made once."""
         key = id(model), scale, id(flat)
         found = self._shapes.get(key)
         if found is None:
-            found = self._shapes[key] = (model, flat), shape_of(model, scale, flat)
+            found = self._shapes[key] = (model, flat), solid_model(model, scale, flat)
         return found[1]
 
     def looks_with(self, painted: Mapping[int, Model]) -> tuple[Floats, Floats]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
-from sailenv_ros.light.relight.ray_shapes import Shape
+from sailenv_ros.rays.solid_models import SolidModel
 from sailenv_ros.native.ray_types import RAY_INSTANCE
 from sailenv_ros.native.render_types import address
 from sailenv_ros.types.baked_light import LightChart
@@ -47,7 +47,7 @@ class Change:
 class PlacedInstance:
     """A shape where it stands: before the changes, after them, or both."""
 
-    shape: Shape
+    shape: SolidModel
     pose: NDArray[np.float64]
     chart: LightChart | None
     radiance: NDArray[np.float32] | None
@@ -93,7 +93,7 @@ def ray_instances(things: list[PlacedInstance]) -> tuple[NDArray[np.void], NDArr
 
 
 def _box(
-    shape: Shape, pose: NDArray[np.float64]
+    shape: SolidModel, pose: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     middle = pose[:3, :3] @ shape.centre + pose[:3, 3]
     half = np.abs(pose[:3, :3]) @ ((shape.tree.high - shape.tree.low) / 2.0) + 1e-4

@@ -22,6 +22,7 @@ from sailenv_ros.native.library import native_library
 from sailenv_ros.native.light_maps import LayeredMap, blur_directions, sum_texels
 from sailenv_ros.native.render_types import LIGHT, REFLECTION_POINT, address, record
 from sailenv_ros.render.cpu.part_table import PartTable
+from sailenv_ros.render.cpu.traced_scene import TracedScene
 from sailenv_ros.render.scene import reflection_map as reflections
 from sailenv_ros.render.scene.baked_state import BakedState
 from sailenv_ros.render.scene.lamps import MAX_LIGHTS, strongest_lamps
@@ -150,6 +151,7 @@ class FrameLight:
         self._light_map: LayeredMap | None = None
         self._of: tuple[SceneContents, CompositedLight | None] | None = None
         self._reflected: CompositedLight | None = None
+        self._traced = TracedScene()
 
     def at(self, snapshot: WorldSnapshot, table: PartTable, radiance: Radiance) -> NDArray[np.void]:
         """Bring everything up to date for a snapshot.
@@ -183,6 +185,7 @@ class FrameLight:
             self._shadow.draw(main, snapshot, table, casting=~still, framed=still)
         self._set_shadows(light, self._shadow, self._static_shadow)
         light["instance_light_at"] = address(self._baked.instances)
+        light["traced_at"] = address(self._traced.update(snapshot, table, still))
         if same:
             self._set_reflection_table(light, snapshot)
             return light

@@ -5,6 +5,9 @@
 namespace sailenv {
 namespace {
 
+// What glass mirrors is looked at by rays if it is brighter than this share of what else is seen.
+constexpr float SEEN = 0.2f;
+
 // A triangle's corners, as planes over depth, or over 1 where rays are parallel: object normal, uv.
 struct Planes {
     f8 along_x, along_y, at_0;
@@ -106,10 +109,10 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     const f8 fresnel = 0.04f + 0.96f * (g2 * g2 * grazing);
     const f8 rest = 1.0f - fresnel;
     const Vec3x8 point = begin + ray * depth;
-    const Vec3x8 mirrored = mirrored_light(light, part, point, 2.0f * facing * normal - view);
+    const Vec3x8 direction = 2.0f * facing * normal - view;
+    Vec3x8 mirrored = mirrored_light(light, part, point, direction);
     const Vec3x8 around = light_around(light, part.id, normal, point);
-    const Vec3x8 added =
-        fresnel * mirrored + rest * base.alpha * colour * around + colour * part.emission;
+    const Vec3x8 own = rest * base.alpha * colour * around + colour * part.emission;
     // What comes through takes the hue of the material, the more the denser it is.
     const Vec3x8 hue = colour / max(largest(colour), 1e-3f);
     const Vec3x8 through =
@@ -123,6 +126,15 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
         }
     }
     const Vec3x8 seen_through = Vec3x8(load(behind), load(behind + 8), load(behind + 16)) * through;
+    if (light.reflecting && light.traced != nullptr) {
+        const f8 seen = luminance(own * light.exposure + seen_through);
+        const i8 clear = wanted & (luminance(mirrored) * fresnel * light.exposure >= SEEN * seen);
+        if (any(clear)) {
+            mirrored =
+                trace_glass(s, point, direction, depth / inverse_length(ray), clear, mirrored);
+        }
+    }
+    const Vec3x8 added = fresnel * mirrored + own;
     const Vec3x8 sum = clamp(clamp(added * light.exposure, 0.0f, 6e4f) + seen_through, 0.0f, 6e4f);
     const i8 r = to_half(sum.x), g = to_half(sum.y), b = to_half(sum.z);
     for (int k = 0; k < 8; k++) {

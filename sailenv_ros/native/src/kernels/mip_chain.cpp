@@ -2,7 +2,7 @@
 #include <cstring>
 
 #include "../abi.h"
-#include "render_types.h"
+#include "traced_types.h"
 
 namespace {
 
@@ -55,5 +55,7 @@ SAILENV_KERNEL(structure_sizes)(int64_t* sizes) {
     sizes[7] = sizeof(sailenv::CubeFace);
     sizes[8] = sizeof(sailenv::LensTiles);
     sizes[9] = sizeof(sailenv::TrianglePlace);
+    sizes[10] = sizeof(sailenv::TracedInstance);
+    sizes[11] = sizeof(sailenv::TracedScene);
     return sailenv::STATUS_OK;
 }

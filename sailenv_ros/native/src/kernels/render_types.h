@@ -106,6 +106,8 @@ struct ReflectionPoint {
 // three axes in the world, four numbers each, of which the last is 0.
 constexpr int32_t LIGHT_TERMS = 28, INSTANCE_ROW = 3 * LIGHT_TERMS + 12;
 
+struct TracedScene;  // see traced_types.h
+
 // Everything that lights a picture; all vectors in the world frame.
 struct Light {
     vec3 main_colour, main_towards;
@@ -139,8 +141,9 @@ struct Light {
     const ReflectionPoint* reflection_points;
     const int32_t* reflection_table;  // (ids,): the point that an instance uses
     vec3 room_low, room_high;
-    int32_t outside_id;      // of what lies outside the room, which shines as the sky does; 0
-    float outside_radiance;  // of its white
+    const TracedScene* traced;  // or null
+    int32_t outside_id;         // of what lies outside the room, which shines as the sky does; 0
+    float outside_radiance;     // of its white
 };
 
 struct View {

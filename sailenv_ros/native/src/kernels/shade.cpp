@@ -1,7 +1,8 @@
 // Light of opaque surfaces and of the sky: the same model as shaders/lighting.frag and sky.frag.
 //
 // A band is walked down in chunks of pixels, which go through one stage after the other:
-// shade_gather.cpp, shade_material.cpp, shade_around.cpp, shade_reflections.cpp, shade_combine.cpp.
+// shade_gather.cpp, shade_material.cpp, shade_around.cpp, shade_reflections.cpp, shade_traced.cpp,
+// shade_combine.cpp.
 #include "shade.h"
 
 #include <algorithm>
@@ -100,8 +101,8 @@ void shine_as_outside(const Shading& s, Chunk& c) {
     }
 }
 
-// The light of what was gathered.
-void light_chunk(const Shading& s, Chunk& c) {
+// The light of what was gathered; `before` as in `trace_reflections`.
+void light_chunk(const Shading& s, Chunk& c, TracedRow* before) {
     if (!c.hit) {
         for (int32_t i = 0; i < c.padded; i += 8) {
             c.light.set(i, splat(vec3(0.0f, 0.0f, 0.0f)));
@@ -126,6 +127,7 @@ void light_chunk(const Shading& s, Chunk& c) {
         light_from_sky(s, c);
     }
     mirror_surroundings(s, c);
+    if (s.light->reflecting && s.light->traced != nullptr) trace_reflections(s, c, before);
     reflect_to_eye(s, c);
 }
 
@@ -157,7 +159,7 @@ void write_radiance(const Shading& s, const Chunk& c, uint16_t* radiance) {
     memcpy(radiance, out, static_cast<size_t>(c.count) * 8);
 }
 
-void shade_chunk(const Shading& s, Chunk& c) {
+void shade_chunk(const Shading& s, Chunk& c, TracedRow& before) {
     const Outputs& wanted = *s.outputs;
     if (!wanted.radiance && !wants_attributes(wanted)) {
         if (wanted.surface != nullptr) write_surface(s, c.x, c.y, c.count);
@@ -174,7 +176,7 @@ void shade_chunk(const Shading& s, Chunk& c) {
     set_rays(s, c);
     write_attributes(s, c);
     if (s.outputs->radiance == nullptr) return;
-    light_chunk(s, c);
+    light_chunk(s, c, &before);
     write_radiance(s, c, s.outputs->radiance + 4 * (c.y * s.width + c.x));
 }
 
@@ -198,9 +200,10 @@ void shade_band(const Shading& s, int32_t first_row, int32_t last_row) {
         chunk.x = x;
         chunk.count = static_cast<int32_t>(rest < CHUNK ? rest : CHUNK);
         chunk.padded = (chunk.count + 7) & ~7;
+        TracedRow before;
         for (int32_t y = first_row; y < last_row; y++) {
             chunk.y = y;
-            shade_chunk(s, chunk);
+            shade_chunk(s, chunk, before);
         }
     }
 }
@@ -213,7 +216,7 @@ void shade_fragments(const Shading& s, const Fragment* fragments, int64_t count,
         chunk.padded = (chunk.count + 7) & ~7;
         gather_fragments(s, fragments + first, chunk);
         set_rays(s, chunk);
-        light_chunk(s, chunk);
+        light_chunk(s, chunk, nullptr);
         write_radiance(s, chunk, out + 4 * first);
     }
 }

@@ -85,8 +85,44 @@ void apply_detail_maps(const Shading& s, Chunk& c);
 void light_from_bake(const Shading& s, Chunk& c);
 void light_from_sky(const Shading& s, Chunk& c);
 
-// What each point mirrors.
+// What each point mirrors, as pictures of the room have it.
 void mirror_surroundings(const Shading& s, Chunk& c);
+
+// What rays from a row's pixels met: weighted sums of radiance, and of which surfaces.
+struct TracedRow {
+    int32_t y = -9;
+    int32_t id[CHUNK];
+    float weight[CHUNK];
+    Vectors sum, normal;
+};
+
+// Puts in its place what rays meet, where that is worth it; see shade_traced.cpp. `before` is what
+// rows above met, and is brought up to date; null for pixels that lie anywhere.
+void trace_reflections(const Shading& s, Chunk& c, TracedRow* before);
+
+// The direction from which a surface mirrors light to the eye.
+LANES_INLINE Vec3x8 mirrored_ray(const Chunk& c, int32_t i) {
+    const Vec3x8 ray = c.ray.at(i), normal = c.normal.at(i);
+    const f8 scale = inverse_length(ray);
+    const f8 twice = 2.0f * dot(ray, normal) * scale;
+    return ray * scale - twice * normal;
+}
+
+// Share of the light around that a surface mirrors: `x` times its reflectance head-on, plus `y`.
+// Split-sum environment term, analytic fit for GGX (Karis, "Physically based shading on mobile").
+struct Mirroring {
+    f8 x, y;
+};
+LANES_INLINE Mirroring mirroring(f8 roughness, f8 cosine) {
+    const f8 nv = min8(cosine, splat(1.0f));
+    const f8 q0 = 1.0f - roughness, q1 = 0.0425f - 0.0275f * roughness,
+             q2 = 1.04f - 0.572f * roughness, q3 = 0.022f * roughness - 0.04f;
+    const f8 a = min8(q0 * q0, exp2_8(-9.28f * nv)) * q0 + q1;
+    return {-1.04f * a + q2, 1.04f * a + q3};
+}
+LANES_INLINE Vec3x8 reflectance_head_on(Vec3x8 base, f8 metallic) {
+    return mix(vec3(0.04f, 0.04f, 0.04f), base, metallic);
+}
 
 // Radiance seen where nothing was hit; see shaders/sky.frag.
 Vec3x8 background(const Light& light, Vec3x8 direction);

@@ -46,17 +46,11 @@ void add_lamp(const Lamp& lamp, const Surface8& s, Vec3x8& sum) {
 // What a surface sends to the eye of the light around it and of what it mirrors.
 LANES_INLINE Vec3x8 from_environment(const Surface8& s, f8 roughness, Vec3x8 around,
                                      Vec3x8 mirrored) {
-    // Split-sum environment term, analytic fit for GGX (Karis, "Physically based shading on
-    // mobile").
-    const f8 nv = min8(s.nv, splat(1.0f));
-    const f8 q0 = 1.0f - roughness, q1 = 0.0425f - 0.0275f * roughness,
-             q2 = 1.04f - 0.572f * roughness, q3 = 0.022f * roughness - 0.04f;
-    const f8 a = min8(q0 * q0, exp2_8(-9.28f * nv)) * q0 + q1;
-    const f8 term_x = -1.04f * a + q2, term_y = 1.04f * a + q3;
-    const f8 lost = 1.0f - (term_x + term_y);
+    const Mirroring term = mirroring(roughness, s.nv);
+    const f8 lost = 1.0f - (term.x + term.y);
     // Single bounces in the microfacets, and what comes back from further ones (Fdez-Aguera
     // 2019, "A multiple-scattering microfacet model").
-    const Vec3x8 once = s.f0 * term_x + term_y;
+    const Vec3x8 once = s.f0 * term.x + term.y;
     const Vec3x8 mean = s.f0 + (1.0f - s.f0) * (1.0f / 21.0f);
     const Vec3x8 again = lost * once * mean / (1.0f - mean * lost);
     return once * mirrored + (again + s.diffuse * (1.0f - once - again)) * around;
@@ -74,7 +68,7 @@ void reflect_to_eye(const Shading& s, Chunk& c) {
         here.point = c.point.at(i);
         here.normal = c.normal.at(i);
         here.view = ray * -inverse_length(ray);
-        here.f0 = mix(vec3(0.04f, 0.04f, 0.04f), base, metallic);
+        here.f0 = reflectance_head_on(base, metallic);
         here.diffuse = base * (1.0f - metallic);
         const f8 square = roughness * roughness;
         here.a2 = square * square;

@@ -5,14 +5,6 @@
 namespace sailenv {
 namespace {
 
-// The direction from which a surface mirrors light to the eye.
-LANES_INLINE Vec3x8 mirrored_ray(const Chunk& c, int32_t i) {
-    const Vec3x8 ray = c.ray.at(i), normal = c.normal.at(i);
-    const f8 scale = inverse_length(ray);
-    const f8 twice = 2.0f * dot(ray, normal) * scale;
-    return ray * scale - twice * normal;
-}
-
 // The angle whose tangent is y / x, to 1e-6 (Abramowitz and Stegun 4.4.49).
 f8 arc_tangent(f8 y, f8 x) {
     const f8 ax = abs8(x), ay = abs8(y);

@@ -1,0 +1,119 @@
+"""The solid surfaces of models, as rays of light meet them. From `Model` to trees of triangles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary, WeakValueDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.rays.model_triangles import joined, triangles_of
+from sailenv_ros.rays.triangle_tree import TriangleTree, triangle_tree
+from sailenv_ros.types.baked_light import Unwrapping
+from sailenv_ros.types.model import Material, Mesh, Model
+
+__all__ = ["SolidModel", "solid_model"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SolidModel:
+    """The solid surface of a model at one scale.
+
+    Attributes
+    ----------
+    tree : TriangleTree
+        In floats.
+    triangles : (S,) int32
+        Place of each of its triangles among all of the model's, part by part.
+    turned : bool
+        Whether the second and the third corner of triangles are exchanged: a mirrored model's run
+        the other way round.
+    centre : (3,) float64
+        Of a ball around it, in the body frame [m].
+    radius : float
+        [m].
+    made_of : tuple
+        What `solid_model` knows it by.
+    """
+
+    tree: TriangleTree
+    triangles: NDArray[np.int32]
+    turned: bool
+    centre: NDArray[np.float64]
+    radius: float
+    made_of: tuple[object, ...]
+
+
+_Known = WeakValueDictionary[tuple[object, ...], SolidModel]
+_made: WeakKeyDictionary[Mesh, _Known] = WeakKeyDictionary()
+"""Surfaces that somebody uses, by the first mesh of a model: with other colours it has the same."""
+
+
+def solid_model(
+    model: Model, scale: tuple[float, float, float], unwrapping: Unwrapping | None
+) -> SolidModel:
+    """Return the surface of a model; glass, and what a mask leaves mostly open, is left out.
+
+    It is the same object as long as somebody keeps it.
+
+    Parameters
+    ----------
+    model : Model
+        With one part at least.
+    scale : (3,) tuple of float
+    unwrapping : Unwrapping or None
+        With it the tree knows where triangles lie in the model's chart.
+    """
+    parts = model.parts
+    made_of = (unwrapping, *(thing for part in parts for thing in (part.mesh, *_rule(part.material))))
+    key = (scale, *(id(thing) if isinstance(thing, _OBJECTS) else thing for thing in made_of))
+    known = _made.setdefault(parts[0].mesh, WeakValueDictionary())
+    found = known.get(key)
+    if found is None:
+        # The first mesh lives as long as the entry anyway, and must not live because of it.
+        others = tuple(thing for thing in made_of if thing is not parts[0].mesh)
+        found = known[key] = _solid_model(model, scale, unwrapping, others)
+    return found
+
+
+_OBJECTS = (Mesh, Unwrapping, np.ndarray)
+
+
+def _rule(material: Material) -> tuple[object, ...]:
+    """Return all of a material that tells which triangles are solid, and from which side."""
+    rule: tuple[object, ...] = material.alpha, material.double_sided
+    if material.alpha != "opaque":
+        rule += (material.base_colour[3],)
+    if material.alpha == "mask":
+        rule += material.alpha_cutoff, material.base_colour_texture
+    return rule
+
+
+def _solid_model(
+    model: Model,
+    scale: tuple[float, float, float],
+    unwrapping: Unwrapping | None,
+    made_of: tuple[object, ...],
+) -> SolidModel:
+    every = triangles_of(model)
+    solid = np.flatnonzero(every.passes == 0.0)
+    corners = (every.corners[solid] * np.asarray(scale)).astype(np.float32)
+    places = None
+    if unwrapping is not None:
+        flat = zip(unwrapping.uvs, unwrapping.triangles, strict=True)
+        places = joined([uvs[triangles] for uvs, triangles in flat], (3, 2))[solid]
+    turned = bool(np.prod(scale) < 0.0)
+    if turned:
+        corners, places = corners[:, [0, 2, 1]], None if places is None else places[:, [0, 2, 1]]
+    tree = triangle_tree(corners, every.two_sided[solid], places)
+    centre = (tree.low + tree.high) / 2.0
+    far = np.linalg.norm(corners.reshape(-1, 3) - centre, axis=1).max(initial=0.0)
+    return SolidModel(
+        tree=tree,
+        triangles=solid.astype(np.int32),
+        turned=turned,
+        centre=centre,
+        radius=float(far),
+        made_of=made_of,
+    )
