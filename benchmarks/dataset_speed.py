@@ -28,8 +28,8 @@ from sailenv_ros.dataset import engine_of, load_job, make_dataset
 from sailenv_ros.dataset.job import Job
 from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.dataset.shard_maker import ShardMaker
-from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.threads import THREADS_VARIABLE
 from sailenv_ros.types.views import RENDERED_VIEWS
 
 CLIPS_OF_SHARD = 50

@@ -40,11 +40,11 @@ from benchmarks.reference.tracing import HOME, ToolMissing, Traced, run_tool, tr
 from sailenv_ros.frame.pictures.contact_sheet import save_contact_sheet
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.object_lights import with_object_light
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.render.gl.renderer import Renderer
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
 from sailenv_ros.types.picture_settings import PictureSettings

@@ -30,10 +30,10 @@ from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import FINE, QUICK
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.system.user_folders import cache_folder
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.camera import Camera, CameraIntrinsics

@@ -14,8 +14,8 @@ from sailenv_ros.dataset.remote_storage import open_storage
 from sailenv_ros.dataset.shard_maker import ShardMaker
 from sailenv_ros.errors import RecordingError, SailenvError
 from sailenv_ros.extras import need
-from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
+from sailenv_ros.system.threads import THREADS_VARIABLE
 
 __all__ = ["RayEngine"]
 

@@ -17,9 +17,9 @@ from sailenv_ros.dataset.reader import DatasetFrame
 from sailenv_ros.dataset.samples import SampleFormat, check_format, sample_of
 from sailenv_ros.dataset.shard_plan import ShardPlan
 from sailenv_ros.errors import InvalidRequest, RecordingError, UnknownName
-from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.parent import end_at_once, end_with_parent
+from sailenv_ros.system.threads import THREADS_VARIABLE
 
 __all__ = ["DatasetStream"]
 

@@ -21,10 +21,10 @@ from typing import Any, Generic, TypeVar
 
 from sailenv_ros.dataset.engine import ATTEMPTS, OnFrames, neighbour_runs
 from sailenv_ros.errors import RecordingError
-from sailenv_ros.native.library import THREADS_VARIABLE
 from sailenv_ros.system.interrupts import held_interrupts
 from sailenv_ros.system.memory import keep_freed_memory
 from sailenv_ros.system.parent import end_at_once, end_with_parent
+from sailenv_ros.system.threads import THREADS_VARIABLE
 
 __all__ = ["WorkerPool"]
 

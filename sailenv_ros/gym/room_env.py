@@ -20,8 +20,8 @@ from sailenv_ros.gym.room import OwnObject, Room, RoomOrder
 from sailenv_ros.gym.room_settings import FAST_PICTURE, STEP_NS, THREADS
 from sailenv_ros.gym.room_store import shared_rooms
 from sailenv_ros.gym.room_table import KINDS, room_names
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.space.free_space import BodySize
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.camera import CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.listed_views import Views

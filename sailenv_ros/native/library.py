@@ -32,7 +32,6 @@ __all__ = [
     "load_library",
     "native_library",
     "raise_for_status",
-    "thread_count",
     "using_instruction_set",
 ]
 
@@ -46,7 +45,6 @@ LIBRARY_VARIABLE = "SAILENV_NATIVE_LIBRARY"
 """Path of another build of the same sources, e.g. one with sanitizers."""
 
 INSTRUCTION_SET_VARIABLE = "SAILENV_INSTRUCTION_SET"
-THREADS_VARIABLE = "SAILENV_THREADS"
 
 _TYPES: dict[str, Any] = {"a": ctypes.c_void_p, "i": ctypes.c_int64, "n": ctypes.c_double}
 _STATUS = {1: "refused its arguments"}
@@ -234,19 +232,3 @@ def checked(
             f"a dense {expected} array of shape ({sizes})",
         )
     return array
-
-
-def thread_count() -> int:
-    """Return how many threads a kernel may use: ``SAILENV_THREADS``, else the processors it has.
-
-    Raises
-    ------
-    InvalidRequest
-        If the environment's ``SAILENV_THREADS`` is no number from 1 to 256.
-    """
-    asked = os.environ.get(THREADS_VARIABLE, "")
-    if not asked:
-        return len(os.sched_getaffinity(0))
-    if not asked.isdecimal() or not 1 <= int(asked) <= 256:
-        raise InvalidRequest(THREADS_VARIABLE, asked, "an integer from 1 to 256")
-    return int(asked)

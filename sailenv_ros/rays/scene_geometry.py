@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.ray_kernels import BoxTree, RayHits, build_tree, cast_rays
 from sailenv_ros.native.ray_types import RAY_SHAPE
 from sailenv_ros.rays.cutouts import surface_at
 from sailenv_ros.rays.opaque_models import OpaqueModel, deformed_model, opaque_model
 from sailenv_ros.space import RayCast
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.instance_states import InstanceStates
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import SceneContents

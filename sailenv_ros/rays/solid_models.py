@@ -66,7 +66,10 @@ def solid_model(
         With it the tree knows where triangles lie in the model's chart.
     """
     parts = model.parts
-    made_of = (unwrapping, *(thing for part in parts for thing in (part.mesh, *_rule(part.material))))
+    made_of = (
+        unwrapping,
+        *(thing for part in parts for thing in (part.mesh, *_rule(part.material))),
+    )
     key = (scale, *(id(thing) if isinstance(thing, _OBJECTS) else thing for thing in made_of))
     known = _made.setdefault(parts[0].mesh, WeakValueDictionary())
     found = known.get(key)

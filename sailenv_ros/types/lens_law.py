@@ -24,7 +24,7 @@ from sailenv_ros.native.lens_models import (
     project_points,
     unproject_places,
 )
-from sailenv_ros.native.library import thread_count
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.validation import Bounds, is_finite_number, shown_number
 
 __all__ = ["PINHOLE", "LensLaw", "checked_coefficients", "law_of_lens"]

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.native.deformation_kernels import skin
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.postures.skeleton import Posture, joint_frames, skin_matrices
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Asset, Model

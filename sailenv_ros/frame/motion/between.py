@@ -15,8 +15,8 @@ from sailenv_ros.frame.lens_rays import bent_lenses
 from sailenv_ros.frame.motion.deforming_motion import surface_motions
 from sailenv_ros.frame.motion.frame_state import AnyFrame, frame_state_of, require_common_past
 from sailenv_ros.frame.motion.rigid_motion import OCCLUSION_TOLERANCE, motion_table
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, move_points
+from sailenv_ros.system.threads import thread_count
 
 __all__ = ["Motion", "motion"]
 

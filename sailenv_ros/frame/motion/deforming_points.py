@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.surface_kernels import surface_points
 from sailenv_ros.rays.opaque_models import surface_between
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.instance_states import InstanceStates
 
 __all__ = ["at_instant", "at_rest"]

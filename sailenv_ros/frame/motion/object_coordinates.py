@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.frame.motion.deforming_motion import object_points
 from sailenv_ros.frame.motion.frame_state import AnyFrame, frame_state_of
-from sailenv_ros.native.library import thread_count
+from sailenv_ros.system.threads import thread_count
 
 __all__ = ["object_coordinates"]
 

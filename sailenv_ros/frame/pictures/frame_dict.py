@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.frame.data import FrameData
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.view_kernels import convert_views
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.labels import instance_colours
 from sailenv_ros.types.views import VIEWS
 

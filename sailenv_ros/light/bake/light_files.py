@@ -25,7 +25,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.array_coding import LEVEL, QUICK_LEVEL, coded, decoded
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.system.files import (
     file_lock,
     make_folder,
@@ -34,6 +33,7 @@ from sailenv_ros.system.files import (
     write_file,
     written_file,
 )
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.system.user_folders import cache_folder, remove_oldest
 from sailenv_ros.types.baked_light import (
     BakedLight,

@@ -18,9 +18,9 @@ from sailenv_ros.light.bake.returned_light import returned
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.relight.baked_texels import BakedTexels, baked_texels, patch_means
 from sailenv_ros.light.relight.found_light import FoundLight
-from sailenv_ros.rays.solid_models import SolidModel, solid_model
 from sailenv_ros.rays.light_rays import glass_of
 from sailenv_ros.rays.model_triangles import triangles_of
+from sailenv_ros.rays.solid_models import SolidModel, solid_model
 from sailenv_ros.rays.static_geometry import StaticGeometry, static_geometry_of
 from sailenv_ros.types.baked_light import BakedLight, Unwrapping
 from sailenv_ros.types.colour import LINEAR_OF_SRGB8

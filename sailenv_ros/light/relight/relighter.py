@@ -22,7 +22,7 @@ from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
-from sailenv_ros.native.library import thread_count
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.baked_light import BakedLight, ObjectLight
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import REST_S, SceneContents, WorldSnapshot

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
-from sailenv_ros.rays.solid_models import SolidModel
 from sailenv_ros.native.ray_types import RAY_INSTANCE
 from sailenv_ros.native.render_types import address
+from sailenv_ros.rays.solid_models import SolidModel
 from sailenv_ros.types.baked_light import LightChart
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Model

@@ -12,9 +12,9 @@ from sailenv_ros.errors import InvalidRequest
 from sailenv_ros.frame.lens_rays import depth_shares, tells_depth
 from sailenv_ros.frame.truth.amodal_masks import AmodalMasks
 from sailenv_ros.native.drawing import AmodalDrawing
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.cpu.camera_drawing import native_view
 from sailenv_ros.render.cpu.part_table import PartTable
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.snapshot import WorldSnapshot
 
@@ -29,7 +29,7 @@ class AmodalRenderer:
     table : PartTable or None
         Of a renderer, whose meshes are used then; None makes an own one.
     threads : int or None
-        How many threads draw; None for `library.thread_count`. Masks do not depend on it.
+        How many threads draw; None for `system.threads.thread_count`. Masks do not depend on it.
 
     Raises
     ------

@@ -36,7 +36,7 @@ class NativeRenderer(DrawingRenderer):
     Parameters
     ----------
     threads : int or None
-        How many threads draw; None for `library.thread_count`. Frames do not depend on it.
+        How many threads draw; None for `system.threads.thread_count`. Frames do not depend on it.
     table : PartTable or None
         With stores of meshes and textures that outlive this renderer; None for its own.
     reflections : ReflectionStore or None

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.drawing import mip_chain
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.render_types import TEXTURE, address, record
 from sailenv_ros.render.scene.packed_maps import pack_maps
 from sailenv_ros.render.scene.texture_images import SIZES_PX, array_of, square_texels
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.model import Material, Texture
 
 __all__ = ["TextureStore"]

@@ -1,4 +1,4 @@
-"""What rays from shiny surfaces meet: all that is drawn and does not deform, where it stands.
+"""The scene as rays from shiny surfaces meet it: all that is drawn and does not deform.
 
 Snapshots and a `PartTable` come in, a TRACED_SCENE for the shading kernel goes out.
 """
@@ -6,6 +6,7 @@ Snapshots and a `PartTable` come in, a TRACED_SCENE for the shading kernel goes 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,7 +59,7 @@ class TracedScene:
         self._centres = np.zeros((0, 3))
         self._halves = np.zeros((0, 3))
         self._poses = np.full((0, 4, 4), np.nan)
-        self._kept: tuple[NDArray[np.void], ...] = ()
+        self._kept: tuple[NDArray[Any], ...] = ()
 
     def update(
         self, snapshot: WorldSnapshot, table: PartTable, still: NDArray[np.bool_]

@@ -15,7 +15,6 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.native.light_maps import blur_directions
 from sailenv_ros.render.gl.baked_textures import BakedTextures
 from sailenv_ros.render.gl.draw_list import DrawList
@@ -34,6 +33,7 @@ from sailenv_ros.render.scene.lightmap_compositing import (
 from sailenv_ros.render.scene.mirrored_lamps import Seen
 from sailenv_ros.render.scene.outside_light import shown_outside
 from sailenv_ros.render.scene.room_reflections import RoomReflections
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import WorldSnapshot

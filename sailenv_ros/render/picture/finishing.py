@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from sailenv_ros.errors import RenderError
 from sailenv_ros.frame.lens_rays import reach_view
-from sailenv_ros.native.library import thread_count
 from sailenv_ros.render.contract import RenderedViews, RenderRequest
 from sailenv_ros.render.picture.annotate import annotate, with_depth
 from sailenv_ros.render.picture.auto_exposure import with_exposure
 from sailenv_ros.render.picture.measured_depth import MEASURED_FROM, measured_depth
 from sailenv_ros.render.picture.post_pass import Light, PostPass
+from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.snapshot import Observation, SceneContents, WorldSnapshot
 from sailenv_ros.types.views import LIT_VIEWS, VIEWS, checked_views
 
@@ -44,7 +44,7 @@ class DrawingRenderer(ABC):
     Parameters
     ----------
     threads : int or None
-        How many work on a frame, None for `library.thread_count`. Frames do not depend on it.
+        How many work on a frame, None for `threads.thread_count`. Frames do not depend on it.
     """
 
     def __init__(self, threads: int | None = None) -> None:

@@ -14,7 +14,7 @@ import pytest
 from sailenv_ros.errors import InvalidRequest, NativeLibraryError, UnknownName
 from sailenv_ros.native import compile as native_compile
 from sailenv_ros.native import library
-from sailenv_ros.native.library import NativeLibrary, checked, load_library, thread_count
+from sailenv_ros.native.library import NativeLibrary, checked, load_library
 from sailenv_ros.native.self_test import run_self_test
 
 END_TIMEOUT_S = 60.0
@@ -108,18 +108,6 @@ def test_arrays_are_checked_before_their_memory_is_used() -> None:
     for wrong in (array.astype(np.float64), array[:, ::2], array[0], array.T):
         with pytest.raises(InvalidRequest, match=r"depth must be a dense float32 array"):
             checked("depth", wrong, np.float32, (4, 6))
-
-
-def test_the_number_of_threads_can_be_set(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the environment, else it is that of the processors."""
-    monkeypatch.delenv(library.THREADS_VARIABLE, raising=False)
-    assert thread_count() == len(os.sched_getaffinity(0))
-    monkeypatch.setenv(library.THREADS_VARIABLE, "3")
-    assert thread_count() == 3
-    for wrong in ("0", "-2", "many", "1000"):
-        monkeypatch.setenv(library.THREADS_VARIABLE, wrong)
-        with pytest.raises(InvalidRequest, match="SAILENV_THREADS"):
-            thread_count()
 
 
 def test_a_compiler_that_fails_leaves_the_library_as_it_was(tmp_path: Path) -> None:
