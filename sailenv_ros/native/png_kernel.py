@@ -1,4 +1,4 @@
-"""Content of PNG files, by the kernel of png_data.cpp."""
+"""Content of PNG files, by the kernels of png_data.cpp and png_rows.cpp."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.library import Kernel, checked
 
-__all__ = ["png_data"]
+__all__ = ["png_data", "png_rows"]
 
 _PNG_DATA = Kernel("png_data", "aiiiiaia")
+_PNG_ROWS = Kernel("png_rows", "aiiiiaa")
 
 LARGER, MORE_BYTES = 2, 4096
 """Capacity beyond which no stream goes: twice what it is made of, and its heads."""
@@ -33,3 +34,29 @@ def png_data(rows: NDArray[np.uint8], step: int, *, paeth: bool) -> memoryview:
     written = np.zeros(1, np.int64)
     _PNG_DATA(rows, height, width, step, int(paeth), data, data.nbytes, written)
     return data[: int(written[0])].data
+
+
+def png_rows(
+    data: NDArray[np.uint8], height: int, width: int, step: int
+) -> NDArray[np.uint8] | None:
+    """Return the rows of which a file's IDAT chunk is the content.
+
+    Parameters
+    ----------
+    data : (N,) uint8
+    height : int
+        Number of rows.
+    width : int
+        Bytes of a row.
+    step : int
+        Bytes of a pixel, 1 to 8.
+
+    Returns
+    -------
+    rows : (height, width) uint8 or None
+        None if the data are damaged, or made in a way that is read elsewhere.
+    """
+    checked("data", data, np.uint8, (None,))
+    rows, read = np.empty((height, width), np.uint8), np.zeros(1, np.int64)
+    _PNG_ROWS(data, data.size, height, width, step, rows, read)
+    return rows if read[0] else None

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
+import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -46,7 +47,7 @@ from sailenv_ros.native.picture_kernels import (
     make_picture,
     resolve_samples,
 )
-from sailenv_ros.native.png_kernel import png_data
+from sailenv_ros.native.png_kernel import png_data, png_rows
 from sailenv_ros.native.ray_kernels import build_tree, cast_rays, light_hits, light_share
 from sailenv_ros.native.self_test import run_self_test
 from sailenv_ros.native.texel_kernels import cover_texels
@@ -82,6 +83,34 @@ def drive_png_data() -> None:
             for step in (1, 3, 8):
                 for paeth in (False, True):
                     png_data(rows, step, paeth=paeth)
+
+
+def drive_png_rows() -> None:
+    """Streams that are damaged anywhere, that end early, of rows of other sizes; noise."""
+    random = np.random.default_rng(5)
+    rows = random.normal(0.0, 4.0, (40, 90)).astype(np.int64).astype(np.uint8)
+    rows[20:] = 7
+    streams = [bytes(png_data(rows, 3, paeth=True))]
+    for strategy in (zlib.Z_DEFAULT_STRATEGY, zlib.Z_FIXED, zlib.Z_HUFFMAN_ONLY):
+        for level in (0, 9):
+            packing = zlib.compressobj(level, zlib.DEFLATED, 15, 9, strategy)
+            filtered = np.pad(rows, ((0, 0), (1, 0)), constant_values=4)
+            streams.append(packing.compress(filtered.tobytes()) + packing.flush())
+    for stream in streams:
+        whole = np.frombuffer(stream, np.uint8)
+        for size in (0, 1, 6, 7, whole.size // 2, whole.size - 1, whole.size):
+            for height, width, step in ((40, 90, 3), (1, 1, 8), (41, 90, 6), (4096, 4096, 1)):
+                png_rows(whole[:size].copy(), height, width, step)
+        for _ in range(150):
+            damaged = whole.copy()
+            # The first two bytes are refused at once.
+            places = random.integers(2, whole.size, size=random.integers(1, 5))
+            damaged[places] = random.integers(256, size=places.size)
+            png_rows(damaged, 40, 90, 3)
+    for _ in range(500):
+        noise = random.integers(256, size=200, dtype=np.uint8)
+        noise[:2] = 0x78, 0x01
+        png_rows(noise, 40, 90, 3)
 
 
 def drive_self_test() -> None:
@@ -395,6 +424,7 @@ def drive_instance_measures() -> None:
 DRIVERS: tuple[Callable[[], None], ...] = (
     drive_self_test,
     drive_png_data,
+    drive_png_rows,
     drive_lenses,
     drive_annotate,
     drive_motion,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../abi.h"
+#include "png_stream.h"
 
 namespace {
 
@@ -17,13 +18,6 @@ constexpr int64_t LITERALS = 286;  // bytes, the end of a block, lengths of runs
 constexpr int64_t END_OF_BLOCK = 256;
 constexpr int64_t LONGEST_RUN = 258;
 constexpr int64_t BLOCK_SYMBOLS = 1 << 15;
-constexpr uint32_t ADLER = 65521;
-
-// First length of each code from 257 on, and how many bits tell the rest (RFC 1951, 3.2.5).
-constexpr int RUN_FIRST[29] = {3,  4,  5,  6,  7,  8,  9,  10, 11,  13,  15,  17,  19,  23, 27,
-                               31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163, 195, 227, 258};
-constexpr int RUN_BITS[29] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2,
-                              2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 0};
 
 struct Code {
     uint32_t bits = 0;  // as they are written, the first one lowest
@@ -182,13 +176,12 @@ void put_block(Bits& stream, const uint16_t* symbols, int64_t count, bool last) 
     for (const Code& code : codes) length_counts[code.length]++;
     Code lengths[19];
     make_codes(length_counts, 19, 7, lengths);
-    constexpr int ORDER[19] = {16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15};
     bits.put(last ? 1 : 0, 1);
     bits.put(2, 2);
     bits.put(LITERALS - 257, 5);
     bits.put(0, 5);       // one distance
     bits.put(19 - 4, 4);  // all lengths are told
-    for (const int symbol : ORDER) bits.put(lengths[symbol].length, 3);
+    for (const int symbol : LENGTH_ORDER) bits.put(lengths[symbol].length, 3);
     for (const Code& code : codes) bits.put(lengths[code.length].bits, lengths[code.length].length);
     bits.put(lengths[1].bits, lengths[1].length);
     // No code is longer than 21 bits: two at once.
@@ -247,21 +240,6 @@ int64_t take_symbols(const uint8_t* data, int64_t first, int64_t size, uint16_t*
         symbols[count++] = data[place++];
     }
     return place - first;
-}
-
-uint32_t adler_of(const uint8_t* data, int64_t size) {
-    uint32_t a = 1, b = 0;
-    for (int64_t first = 0; first < size; first += 4096) {
-        const uint32_t count = static_cast<uint32_t>(std::min<int64_t>(4096, size - first));
-        uint32_t sum = 0, weighted = 0;
-        for (uint32_t place = 0; place < count; place++) {
-            sum += data[first + place];
-            weighted += data[first + place] * (count - place);
-        }
-        b = (b + a * count + weighted % ADLER) % ADLER;
-        a = (a + sum) % ADLER;
-    }
-    return b << 16 | a;
 }
 
 void filter_row(const uint8_t* row, const uint8_t* above, int64_t width, int64_t step, bool paeth,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import io
 import struct
+import zlib
 from typing import get_args
 
 import cv2
@@ -24,6 +25,7 @@ from sailenv_ros.frame.pictures.codecs import (
     encode_png,
 )
 from sailenv_ros.native.library import native_library, using_instruction_set
+from sailenv_ros.native.png_kernel import png_rows
 from tests.support import allocator
 from tests.support.programs import run
 
@@ -97,6 +99,105 @@ def test_our_own_encoder_writes_the_same_bytes_on_every_instruction_set() -> Non
         with using_instruction_set(name):
             made.add(encode_png(picture, "fastest"))
     assert len(made) == 1
+
+
+@pytest.mark.parametrize("picture", PICTURES, ids=lambda one: f"{one.shape} {one.dtype}")
+def test_our_own_files_are_read_without_opencv(
+    picture: np.ndarray, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On every instruction set; what is read may be written to."""
+    data = encode_png(picture, "fastest")
+    wanted = decode_picture(encode_png(picture))
+    monkeypatch.setattr(cv2, "imdecode", None)
+    for name in native_library().instruction_sets:
+        with using_instruction_set(name):
+            found = decode_picture(data)
+        assert (found.dtype, found.flags.writeable) == (wanted.dtype, True)
+        assert found.dtype.isnative
+        np.testing.assert_array_equal(found, wanted)
+
+
+@pytest.mark.parametrize("picture", PICTURES[:3], ids=lambda one: f"{one.shape} {one.dtype}")
+def test_damaged_files_are_read_or_refused_as_by_opencv(picture: np.ndarray) -> None:
+    """Wherever a byte is another one, lacks or is too much."""
+    data = encode_png(picture[:9, :7], "fastest")
+    for place in range(len(data)):
+        for changed in (
+            data[:place] + bytes([data[place] ^ 0x21]) + data[place + 1 :],
+            data[:place] + data[place + 1 :],
+            data[:place],
+            data[:place] + b"\x00" + data[place:],
+        ):
+            found = cv2.imdecode(np.frombuffer(changed, np.uint8), -1) if changed else None
+            if found is None:
+                with pytest.raises(InvalidRequest, match="a PNG or JPEG file"):
+                    decode_picture(changed)
+            else:
+                wanted = found[..., ::-1] if found.ndim == 3 else found
+                np.testing.assert_array_equal(decode_picture(changed), wanted)
+
+
+def filtered_rows(rows: NDArray[np.uint8], step: int, filters: list[int]) -> bytes:
+    """Filter rows as the PNG specification says (9.2)."""
+    wide = np.pad(rows.astype(int), ((1, 0), (step, 0)))
+    here, left = wide[1:, step:], wide[1:, :-step]
+    up, corner = wide[:-1, step:], wide[:-1, :-step]
+    far = np.abs(np.stack([left, up, corner]) - (left + up - corner))
+    nearest = np.choose(far.argmin(axis=0), [left, up, corner])
+    guesses = np.stack([0 * left, left, up, (left + up) // 2, nearest])
+    data = np.empty((rows.shape[0], rows.shape[1] + 1), np.uint8)
+    data[:, 0] = filters
+    data[:, 1:] = (here - guesses[filters, np.arange(rows.shape[0])]) & 255
+    return data.tobytes()
+
+
+@settings(deadline=None, max_examples=150)
+@given(
+    shape=st.tuples(st.integers(1, 40), st.integers(1, 130)),
+    step=st.integers(1, 8),
+    filters=st.sampled_from([[0], [1], [2], [3], [4], [0, 1, 2, 3, 4], [4] * 9 + [2]]),
+    level=st.sampled_from([0, 1, 6, 9]),
+    strategy=st.sampled_from([0, zlib.Z_FILTERED, zlib.Z_HUFFMAN_ONLY, zlib.Z_RLE, zlib.Z_FIXED]),
+    spread=st.sampled_from([0.0, 1.0, 8.0, 300.0]),
+    seed=st.integers(0, 1000),
+)
+def test_rows_are_read_from_streams_of_any_kind(
+    shape: tuple[int, int],
+    step: int,
+    filters: list[int],
+    level: int,
+    strategy: int,
+    spread: float,
+    seed: int,
+) -> None:
+    """Stored blocks, fixed and own codes, any distance, every filter."""
+    height, width = shape[0], shape[1] * step
+    random = np.random.default_rng(seed)
+    rows = random.normal(0.0, spread, (height, width)).astype(np.int64).astype(np.uint8)
+    packing = zlib.compressobj(level, zlib.DEFLATED, 15, 9, strategy)
+    told = filtered_rows(rows, step, [filters[y % len(filters)] for y in range(height)])
+    data = np.frombuffer(packing.compress(told) + packing.flush(), np.uint8)
+    for name in native_library().instruction_sets:
+        with using_instruction_set(name):
+            np.testing.assert_array_equal(png_rows(data, height, width, step), rows)
+
+
+def test_streams_that_break_a_rule_are_left_to_others() -> None:
+    """Rows of another size or filter, a wrong sum, a dictionary, a window, bytes that follow."""
+    told = filtered_rows(np.arange(200, dtype=np.uint8).reshape(4, 50), 1, [2] * 4)
+    for data, height in (
+        (zlib.compress(told), 3),
+        (zlib.compress(told), 5),
+        (zlib.compress(b"\x05" + told[1:]), 4),
+        (zlib.compress(told)[:-1] + b"\x00", 4),
+        (zlib.compress(told)[:-4], 4),
+        (zlib.compress(told) + b"\x00", 4),
+        (b"\x78\x20" + zlib.compress(told)[2:], 4),
+        (b"\x68\x05" + zlib.compress(told)[2:], 4),
+        (b"", 4),
+    ):
+        assert png_rows(np.frombuffer(data, np.uint8), height, 50, 1) is None
+    assert png_rows(np.frombuffer(zlib.compress(told), np.uint8), 4, 50, 1) is not None
 
 
 def test_labels_are_small() -> None:
