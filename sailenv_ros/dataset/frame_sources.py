@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import os
 import tarfile
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+
+import numpy as np
 
 from sailenv_ros.dataset.formats.view_files import ENDINGS, decoded
 from sailenv_ros.dataset.recipe import DatasetRecipe
@@ -28,6 +32,17 @@ __all__ = ["FrameSource", "frame_source"]
 
 _Place: TypeAlias = tuple[int, int]
 """First byte of a member in its tar file, and its size [B]."""
+
+_HEAD_BYTES = 4096
+"""What is told of a frame is seldom longer, without its objects."""
+
+
+@dataclass(slots=True)
+class _Members:
+    """Where the files of one frame are: what is told of it, and views with their endings."""
+
+    told: _Place | None = None
+    views: list[tuple[str, str, _Place]] = field(default_factory=list)
 
 
 def frame_source(folder: Path, recipe: DatasetRecipe) -> FrameSource:
@@ -51,6 +66,9 @@ def frame_source(folder: Path, recipe: DatasetRecipe) -> FrameSource:
 class FrameSource(ABC):
     """Base of the sources from which frames are read."""
 
+    keeps_arrays: ClassVar[bool] = True
+    """Whether arrays of a frame may be read again, and so must not be written to."""
+
     def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
         self._folder = folder
         self._plan = ShardPlan(recipe)
@@ -69,9 +87,11 @@ class FrameSource(ABC):
 class _TarSource(FrameSource):
     """Reads each file at places of its own, so processes and threads do not disturb each other."""
 
+    keeps_arrays = False
+
     def __init__(self, folder: Path, recipe: DatasetRecipe) -> None:
         super().__init__(folder, recipe)
-        self._places: dict[Path, Mapping[str, _Place]] = {}
+        self._members: dict[Path, Mapping[str, _Members]] = {}
         self._lenses: dict[str, tuple[Mapping[str, Any], CameraIntrinsics]] = {}
 
     def frame(
@@ -82,14 +102,14 @@ class _TarSource(FrameSource):
         name = f"{record['number']:08d}"
         try:
             with path.open("rb", buffering=0) as file:
-                places = self._places_in(path)
-                told = _told(_read(file, places[f"{name}.json"]), objects=objects)
-                views = {}
-                for view in VIEWS:
-                    for ending in ENDINGS:
-                        place = places.get(f"{name}.{view}.{ending}")
-                        if place is not None:
-                            views[view] = decoded(view, ending, _read(file, place))
+                members = self._members_in(path).get(name, _Members())
+                if members.told is None:
+                    raise KeyError(f"{name}.json")
+                told = _told(file, members.told, objects=objects)
+                views = {
+                    view: decoded(view, ending, _read(file, place))
+                    for view, ending, place in members.views
+                }
             frame = Frame(
                 agent=told["agent"],
                 scene=told["scene"],
@@ -118,17 +138,25 @@ class _TarSource(FrameSource):
             kept = self._lenses[camera] = told, CameraIntrinsics(**told)
         return kept[1]
 
-    def _places_in(self, path: Path) -> Mapping[str, _Place]:
-        if path not in self._places:
+    def _members_in(self, path: Path) -> Mapping[str, _Members]:
+        """Return where the files of each frame are, by the frame's name."""
+        if path not in self._members:
+            found: dict[str, _Members] = {}
             with tarfile.TarFile(path) as tar:
-                self._places[path] = {
-                    one.name: (one.offset_data, one.size) for one in tar.getmembers()
-                }
-        return self._places[path]
+                for one in tar.getmembers():
+                    place = one.offset_data, one.size
+                    name, _, rest = one.name.partition(".")
+                    view, _, ending = rest.partition(".")
+                    if rest == "json":
+                        found.setdefault(name, _Members()).told = place
+                    elif view in VIEWS and ending in ENDINGS:
+                        found.setdefault(name, _Members()).views.append((view, ending, place))
+            self._members[path] = found
+        return self._members[path]
 
     def close(self) -> None:
         """Forget what is where; no file is open."""
-        self._places.clear()
+        self._members.clear()
 
 
 class _BagSource(FrameSource):
@@ -159,18 +187,33 @@ class _BagSource(FrameSource):
             self._open = None
 
 
-def _read(file: io.FileIO, place: _Place) -> bytes:
+def _read(file: io.FileIO, place: _Place) -> memoryview:
+    """Return what stands at a place, in memory of its own that may be written to."""
     first, size = place
-    data = os.pread(file.fileno(), size, first)
-    if len(data) != size:
+    data = memoryview(np.empty(size, np.uint8))
+    if os.preadv(file.fileno(), [data], first) != size:
         raise OSError(f"it ends within the {size} bytes at {first}")
     return data
 
 
-def _told(data: bytes, *, objects: bool) -> dict[str, Any]:
+def _told(file: io.FileIO, place: _Place, *, objects: bool) -> dict[str, Any]:
     """Read what is told of a frame; without its objects, which are most of it and come last."""
-    # Quotes within a text are escaped: these bytes are a key. The last one is the frame's own, as
-    # records of what was drawn at random may have one, too, and stand before it.
-    end = -1 if objects else data.rfind(b', "objects": [')
-    told: dict[str, Any] = json.loads(data if end < 0 else data[:end] + b"}")
-    return told
+    first, size = place
+    if not objects and size > _HEAD_BYTES:
+        told = _without_objects(bytes(_read(file, (first, _HEAD_BYTES))))
+        if told is not None:
+            return told
+    whole: dict[str, Any] = json.loads(bytes(_read(file, place)))
+    return whole
+
+
+def _without_objects(data: bytes) -> dict[str, Any] | None:
+    """Return what stands before the objects of a frame; None if these do not begin there."""
+    end = 0
+    # Quotes within a text are escaped: these bytes are a key. Records of what was drawn at random
+    # may have one, too; there the braces around it are open still.
+    while (end := data.find(b', "objects": [', end + 1)) >= 0:
+        with contextlib.suppress(ValueError):
+            told: dict[str, Any] = json.loads(data[:end] + b"}")
+            return told
+    return None

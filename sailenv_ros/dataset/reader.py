@@ -95,6 +95,11 @@ class Dataset(Sequence[DatasetFrame]):
             return [self[number] for number in range(*index.indices(len(self)))]
         return self.frame_at(index)
 
+    @property
+    def keeps_arrays(self) -> bool:
+        """Whether arrays of a frame are kept for another look at it."""
+        return self._source.keeps_arrays
+
     def frame_at(self, index: int, *, objects: bool = True) -> DatasetFrame:
         """Return one frame; with `objects` False without what is told of its objects, quicker."""
         if self._process.is_inherited:

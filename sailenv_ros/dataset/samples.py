@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from sailenv_ros.dataset.reader import Dataset, DatasetFrame
 from sailenv_ros.errors import RecordingError, UnknownName
@@ -60,7 +60,8 @@ class DatasetSamples(Sequence[Sample]):
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
         one = self.dataset.frame_at(index, objects=False)
-        return sample_of(one, self.dataset.recipe.views, self.format, self.dataset.folder)
+        views, folder = self.dataset.recipe.views, self.dataset.folder
+        return sample_of(one, views, self.format, folder, copy=self.dataset.keeps_arrays)
 
     def __iter__(self) -> Iterator[Sample]:
         return (self[number] for number in range(len(self)))
@@ -85,7 +86,12 @@ def check_format(format: str) -> None:
 
 
 def sample_of(
-    one: DatasetFrame, views: Collection[str], format: SampleFormat, source: object
+    one: DatasetFrame,
+    views: Collection[str],
+    format: SampleFormat,
+    source: object,
+    *,
+    copy: bool = True,
 ) -> Sample:
     """Return a frame as a sample; see `DatasetSamples`.
 
@@ -97,19 +103,19 @@ def sample_of(
     format : {'numpy', 'torch'}
     source : object
         Where it is from, for errors.
+    copy : bool
+        False hands the frame's own arrays over where they may be: nobody else may hold them, and
+        the frame must not be used afterwards.
     """
     frame = one.frame
     missing = [view for view in views if view not in frame]
     if missing:
         raise RecordingError(f"{source}: frame {one.number} lacks {', '.join(missing)}")
-    arrays: Mapping[str, NDArray[Any]] = {
-        **{view: frame[view] for view in VIEWS if view in views},
-        "K": frame.camera.intrinsics.K,
-        "world_from_camera": frame.camera.world_from_camera,
-    }
-    own = _OWN[format]
+    made = _MAKERS[format]
     return {
-        **{name: own(VIEWS.get(name), values) for name, values in arrays.items()},
+        **{view: made(VIEWS[view], frame[view], copy) for view in VIEWS if view in views},
+        "K": made(None, frame.camera.intrinsics.K, True),
+        "world_from_camera": made(None, frame.camera.world_from_camera, True),
         "number": one.number,
         "clip": one.clip,
         "time": one.time,
@@ -121,22 +127,33 @@ def sample_of(
     }
 
 
-def _array(spec: ViewSpec | None, values: NDArray[Any]) -> NDArray[Any]:
-    """Return a copy; of one type for all frames, whatever categories their scenes have."""
-    return values.astype(values.dtype if spec is None else spec.dtypes[-1])
+def _own(values: NDArray[Any], dtype: DTypeLike, copy: bool) -> NDArray[Any]:
+    """Return values of a type that may be written to."""
+    if copy or values.dtype != dtype:
+        return values.astype(dtype)
+    try:
+        values.flags.writeable = True
+    except ValueError:  # They stand in memory that is not an array's.
+        return values.copy()
+    return values
 
 
-def _tensor(spec: ViewSpec | None, values: NDArray[Any]) -> Any:
-    """Return a copy as a tensor of a type that PyTorch computes with."""
+def _array(spec: ViewSpec | None, values: NDArray[Any], copy: bool) -> NDArray[Any]:
+    """Return an array of one type for all frames, whatever categories their scenes have."""
+    return _own(values, values.dtype if spec is None else spec.dtypes[-1], copy)
+
+
+def _tensor(spec: ViewSpec | None, values: NDArray[Any], copy: bool) -> Any:
+    """Return a tensor of a type that PyTorch computes with."""
     import torch
 
     is_wide = spec is not None and np.uint16 in spec.dtypes
-    tensor = torch.from_numpy(values.astype(np.int32 if is_wide else values.dtype))
+    tensor = torch.from_numpy(_own(values, np.int32 if is_wide else values.dtype, copy))
     # Making a batch copies anyway, and brings the values into this order then.
     return tensor.permute(2, 0, 1) if spec is not None and spec.channels > 1 else tensor
 
 
-_OWN: Mapping[str, Callable[[ViewSpec | None, NDArray[Any]], Any]] = {
+_MAKERS: Mapping[str, Callable[[ViewSpec | None, NDArray[Any], bool], Any]] = {
     "numpy": _array,
     "torch": _tensor,
 }

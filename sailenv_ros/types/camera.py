@@ -55,6 +55,10 @@ def require_fitting(intrinsics: CameraIntrinsics, picture: PictureSettings) -> N
         raise InvalidRequest("depth_sensor", picture.depth_sensor, SENSOR_OF_PARALLEL_RAYS)
 
 
+_PLAIN_PICTURE = PictureSettings()
+"""Made and checked once, as most cameras have it."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Camera(RebuiltByFields):
     """A camera that stands somewhere.
@@ -77,7 +81,7 @@ class Camera(RebuiltByFields):
 
     intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
     pose: Pose = field(default_factory=Pose)
-    picture: PictureSettings = field(default_factory=PictureSettings)
+    picture: PictureSettings = _PLAIN_PICTURE
     name: str = ""
 
     def __post_init__(self) -> None:

@@ -97,8 +97,10 @@ def encoded(
     return "npy", [header.getvalue(), values]
 
 
-def decoded(view: str, ending: str, data: bytes) -> NDArray[Any]:
+def decoded(view: str, ending: str, data: bytes | memoryview) -> NDArray[Any]:
     """Return the view that `encoded` wrote, in the type that frames have.
+
+    Arrays that are not compressed stay in the memory of `data`.
 
     Raises
     ------
@@ -158,7 +160,7 @@ def _npz(view: str, values: NDArray[Any]) -> bytes:
     return file.getvalue()
 
 
-def _from_png(view: str, data: bytes) -> NDArray[Any]:
+def _from_png(view: str, data: bytes | memoryview) -> NDArray[Any]:
     picture, spec = decode_picture(data), VIEWS[view]
     if spec.png_per_unit is not None:
         # 0 stands for what was not hit, or does not fit.
@@ -169,10 +171,10 @@ def _from_png(view: str, data: bytes) -> NDArray[Any]:
     return picture
 
 
-def _from_npy(view: str, data: bytes) -> NDArray[Any]:
+def _from_npy(view: str, data: bytes | memoryview) -> NDArray[Any]:
     # np.load copies piece by piece, which takes as long as all the rest for a small picture.
     begin = 10 + int.from_bytes(data[8:10], "little")
-    head = _array_head(data[:begin])
+    head = _array_head(bytes(data[:begin]))
     if head is None:
         raise ValueError(f"the view {view} is not an array of version 1.0")
     shape, in_columns, dtype = head

@@ -109,7 +109,7 @@ def encode_jpeg(picture: NDArray[np.uint8], quality: int, *, full_colour: bool =
     return _encoded(".jpg", picture, (np.uint8,), options)
 
 
-def decode_picture(data: bytes) -> NDArray[Any]:
+def decode_picture(data: bytes | memoryview) -> NDArray[Any]:
     """Return the picture of a PNG or JPEG file, with the depth that it has.
 
     Returns
@@ -143,12 +143,12 @@ def _fastest(picture: NDArray[Any]) -> bytes:
     return b"".join((head, *_chunk(b"IDAT", data), _TAIL))
 
 
-def _read_fastest(data: bytes) -> NDArray[Any] | None:
+def _read_fastest(data: bytes | memoryview) -> NDArray[Any] | None:
     """Return the picture of a file as `_fastest` writes it; None if it is another, or damaged.
 
     Four times as fast as OpenCV, which reads all others and says what is none.
     """
-    if len(data) < _HEAD_BYTES + 8 + 4 + len(_TAIL) or not data.endswith(_TAIL):
+    if len(data) < _HEAD_BYTES + 8 + 4 + len(_TAIL) or data[-len(_TAIL) :] != _TAIL:
         return None
     width, height, depth, kind = struct.unpack_from(">IIBB", data, 16)
     is_known = depth in (8, 16) and kind in (_GREY, _COLOUR)
@@ -157,9 +157,8 @@ def _read_fastest(data: bytes) -> NDArray[Any] | None:
     size, name = struct.unpack_from(">I4s", data, _HEAD_BYTES)
     begin = _HEAD_BYTES + 8
     end = len(data) - len(_TAIL) - 4
-    if (size, name) != (end - begin, b"IDAT") or not data.startswith(
-        _head(width, height, depth, kind)
-    ):
+    is_written_so = data[:_HEAD_BYTES] == _head(width, height, depth, kind)
+    if not is_written_so or (size, name) != (end - begin, b"IDAT"):
         return None
     content = memoryview(data)[begin:end]
     if struct.unpack_from(">I", data, end)[0] != zlib.crc32(content, zlib.crc32(name)):
