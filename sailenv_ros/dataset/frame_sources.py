@@ -34,7 +34,7 @@ _Place: TypeAlias = tuple[int, int]
 """First byte of a member in its tar file, and its size [B]."""
 
 _HEAD_BYTES = 4096
-"""What is told of a frame is seldom longer, without its objects."""
+"""A frame's record is seldom longer, without its objects [B]."""
 
 
 @dataclass(slots=True)
@@ -190,7 +190,7 @@ class _BagSource(FrameSource):
 def _read(file: io.FileIO, place: _Place) -> memoryview:
     """Return what stands at a place, in memory of its own that may be written to."""
     first, size = place
-    data = memoryview(np.empty(size, np.uint8))
+    data = np.empty(size, np.uint8).data
     if os.preadv(file.fileno(), [data], first) != size:
         raise OSError(f"it ends within the {size} bytes at {first}")
     return data
