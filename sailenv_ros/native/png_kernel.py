@@ -10,7 +10,7 @@ from sailenv_ros.native.library import Kernel, checked
 __all__ = ["png_data", "png_rows"]
 
 _PNG_DATA = Kernel("png_data", "aiiiiaia")
-_PNG_ROWS = Kernel("png_rows", "aiiiiaa")
+_PNG_ROWS = Kernel("png_rows", "aiiiaa")
 
 LARGER, MORE_BYTES = 2, 4096
 """Capacity beyond which no stream goes: twice what it is made of, and its heads."""
@@ -36,27 +36,23 @@ def png_data(rows: NDArray[np.uint8], step: int, *, paeth: bool) -> memoryview:
     return data[: int(written[0])].data
 
 
-def png_rows(
-    data: NDArray[np.uint8], height: int, width: int, step: int
-) -> NDArray[np.uint8] | None:
-    """Return the rows of which a file's IDAT chunk is the content.
+def png_rows(filtered: NDArray[np.uint8], step: int) -> NDArray[np.uint8] | None:
+    """Return the rows of a PNG file from what is compressed in its IDAT chunk.
 
     Parameters
     ----------
-    data : (N,) uint8
-    height : int
-        Number of rows.
-    width : int
-        Bytes of a row.
+    filtered : (H, 1 + B) uint8
+        Number of each row's filter, and its filtered bytes.
     step : int
         Bytes of a pixel, 1 to 8.
 
     Returns
     -------
-    rows : (height, width) uint8 or None
-        None if the data are damaged, or made in a way that is read elsewhere.
+    rows : (H, B) uint8 or None
+        None if there is no such filter.
     """
-    checked("data", data, np.uint8, (None,))
+    checked("filtered", filtered, np.uint8, (None, None))
+    height, width = filtered.shape[0], filtered.shape[1] - 1
     rows, read = np.empty((height, width), np.uint8), np.zeros(1, np.int64)
-    _PNG_ROWS(data, data.size, height, width, step, rows, read)
+    _PNG_ROWS(filtered, height, width, step, rows, read)
     return rows if read[0] else None

@@ -146,7 +146,7 @@ def _fastest(picture: NDArray[Any]) -> bytes:
 def _read_fastest(data: bytes | memoryview) -> NDArray[Any] | None:
     """Return the picture of a file as `_fastest` writes it; None if it is another, or damaged.
 
-    Four times as fast as OpenCV, which reads all others and says what is none.
+    Faster than OpenCV, which reads all others and says what is none.
     """
     if len(data) < _HEAD_BYTES + 8 + 4 + len(_TAIL) or data[-len(_TAIL) :] != _TAIL:
         return None
@@ -164,11 +164,26 @@ def _read_fastest(data: bytes | memoryview) -> NDArray[Any] | None:
     if struct.unpack_from(">I", data, end)[0] != zlib.crc32(content, zlib.crc32(name)):
         return None
     step = (3 if kind == _COLOUR else 1) * depth // 8
-    rows = png_rows(np.frombuffer(content, np.uint8), height, width * step, step)
+    shape = height, 1 + width * step
+    filtered = _inflated(content, shape[0] * shape[1])
+    if filtered is None:
+        return None
+    rows = png_rows(np.frombuffer(filtered, np.uint8).reshape(shape), step)
     if rows is None:
         return None
     values = rows if depth == 8 else rows.view(">u2").astype(np.uint16)
     return values.reshape(height, width, 3) if kind == _COLOUR else values
+
+
+def _inflated(data: memoryview, size: int) -> bytes | None:
+    """Return `size` bytes that are compressed in all of `data`, or None."""
+    stream = zlib.decompressobj()
+    try:
+        found = stream.decompress(data, size + 1)
+    except zlib.error:
+        return None
+    is_whole = len(found) == size and stream.eof and not stream.unused_data
+    return found if is_whole else None
 
 
 @lru_cache(maxsize=64)

@@ -1,13 +1,10 @@
-// Rows of PNG files out of their streams (RFC 1950; PNG specification, 9): the way back from
-// png_data.cpp. What is damaged or unusual is left to a library that knows what to forgive.
+// Rows of PNG files from their filters (PNG specification, 9): the way back from png_data.cpp.
 #include <algorithm>
 #include <cstring>
-#include <memory>
 #include <new>
+#include <vector>
 
 #include "../abi.h"
-#include "inflate.h"
-#include "png_stream.h"
 
 namespace {
 
@@ -137,41 +134,21 @@ bool unfilter(const uint8_t* filtered, int64_t height, int64_t width, int64_t st
     return true;
 }
 
-bool png_rows(const uint8_t* data, int64_t size, int64_t height, int64_t width, int64_t step,
-              uint8_t* rows) {
-    // Deflate with a window of 32 kB, without a dictionary.
-    const bool is_deflate =
-        size >= 6 && data[0] == 0x78 && (data[0] << 8 | data[1]) % 31 == 0 && !(data[1] & 32);
-    const int64_t bytes = height * (width + 1);
-    constexpr int64_t MOST = 1032;  // bytes that a byte of a stream can stand for
-    if (!is_deflate || bytes / MOST > size) return false;
-    std::unique_ptr<uint8_t[]> filtered(new uint8_t[static_cast<size_t>(bytes)]);
-    std::unique_ptr<uint8_t[]> nothing(new uint8_t[static_cast<size_t>(width)]());
-    std::unique_ptr<inflating::Inflater> inflater(
-        new inflating::Inflater(data + 2, data + size, filtered.get(), filtered.get() + bytes));
-    if (!inflater->inflate()) return false;
-    const uint8_t* rest = inflater->rest();
-    if (data + size - rest != 4) return false;
-    uint32_t told = 0;
-    for (int byte = 0; byte < 4; byte++) told = told << 8 | rest[byte];
-    return told == adler_of(filtered.get(), bytes) &&
-           unfilter(filtered.get(), height, width, step, rows, nothing.get());
-}
-
 }  // namespace
 
-// The rows of a PNG file out of the content of its IDAT chunks: `rows` (height, width) takes bytes
-// as the file has them, `step` of them a pixel. `read` tells 1, or 0 where the stream is damaged or
-// unusual; `rows` are undefined then.
+// The rows of a PNG file: `filtered` (height, 1 + width) begin with their filters each, `rows`
+// (height, width) takes bytes as the file has them, `step` of them a pixel. `read` tells 1, or 0
+// where there is no such filter; `rows` are undefined then.
 SAILENV_KERNEL(png_rows)
-(const uint8_t* data, int64_t size, int64_t height, int64_t width, int64_t step, uint8_t* rows,
+(const uint8_t* filtered, int64_t height, int64_t width, int64_t step, uint8_t* rows,
  int64_t* read) {
     constexpr int64_t LARGEST = int64_t{1} << 32;
-    if (size < 0 || height < 1 || width < 1 || height > LARGEST / width || step < 1 || step > 8) {
+    if (height < 1 || width < 1 || height > LARGEST / width || step < 1 || step > 8) {
         return sailenv::STATUS_INVALID_ARGUMENT;
     }
     try {
-        *read = png_rows(data, size, height, width, step, rows) ? 1 : 0;
+        const std::vector<uint8_t> nothing(static_cast<size_t>(width));
+        *read = unfilter(filtered, height, width, step, rows, nothing.data()) ? 1 : 0;
         return sailenv::STATUS_OK;
     } catch (const std::bad_alloc&) {
         return sailenv::STATUS_OUT_OF_MEMORY;
