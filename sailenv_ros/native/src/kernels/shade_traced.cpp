@@ -251,21 +251,32 @@ bool choose(const Chunk& c, Looks& looks) {
     return some;
 }
 
-// Whether what the rays of a pixel met counts for another one, too.
-bool shares(const Chunk& c, int32_t i, const TracedRow& row, int32_t other) {
-    return other >= 0 && other < c.count && row.weight[other] > 0.0f && row.id[other] == c.id[i] &&
-           row.normal.x[other] * c.normal.x[i] + row.normal.y[other] * c.normal.y[i] +
-                   row.normal.z[other] * c.normal.z[i] >
-               ALIKE;
+// Whether two surfaces are one and turned alike, so that what the rays of one met counts for both.
+bool is_alike(int32_t id, const Vectors& normals, int32_t k, int32_t other_id,
+              const Vectors& others, int32_t other) {
+    return id == other_id && normals.x[k] * others.x[other] + normals.y[k] * others.y[other] +
+                                     normals.z[k] * others.z[other] >
+                                 ALIKE;
 }
 
-// Whether pixels that are looked at anyway do for one; `above` is the row before it, or null.
+// Whether what the rays of a pixel of a row met counts for another one, too.
+bool shares(const Chunk& c, int32_t i, const TracedRow& row, int32_t other) {
+    return other >= 0 && other < c.count && row.weight[other] > 0.0f &&
+           is_alike(c.id[i], c.normal, i, row.id[other], row.normal, other);
+}
+
+// Whether pixels that look anyway do for one: those of `above`, the row before it, or, where that
+// is null, of its own row.
 bool does_without(const Chunk& c, const Looks& looks, const TracedRow* above, int32_t i) {
     const int32_t step = looks.step[i], left = i - i % step;
-    for (int32_t other = left; other <= left + step; other += step) {
-        if (above != nullptr && shares(c, i, *above, other)) return true;
-        if (left == i || other >= c.count || !(looks.share[other] > 0.0f)) continue;
-        if (c.id[other] == c.id[i] && other % looks.step[other] == 0) return true;
+    if (above == nullptr && left == i) return false;
+    for (int32_t other = left; other <= left + step && other < c.count; other += step) {
+        if (above != nullptr) {
+            if (shares(c, i, *above, other)) return true;
+        } else if (looks.share[other] > 0.0f && other % looks.step[other] == 0 &&
+                   is_alike(c.id[i], c.normal, i, c.id[other], c.normal, other)) {
+            return true;
+        }
     }
     return false;
 }
