@@ -45,7 +45,8 @@ def _flat(
     rim, z = v.rim, low + height / 2
     b.box(v.case, (deep, width, height), (x + deep / 2, 0.0, z), bevel=0.004)
     size = (width - 2 * rim, height - 2.4 * rim)
-    front = x + deep + 0.0014
+    # Sides that stand out further are bright dashes where they mirror a window.
+    front = x + deep + 0.0006
     mesh = pictured(*size, z + 0.2 * rim, front, thick=0.003)
     with b.part("screen", "tv"):
         b.form(_shown(b, v, size[0] / size[1]), mesh, collides="none")
