@@ -80,11 +80,28 @@ bool is_drawn(const Met& met) {
            met.instance->part_of[met.instance->placed.shape->order[met.hit.triangle]] >= 0;
 }
 
-// The angle to the mirrored ray of a neighbour that is of the same object.
+// Whether two surfaces are one and turned alike, so that what the rays of one met counts for both.
+bool is_alike(int32_t id, const Vectors& normals, int32_t k, int32_t other_id,
+              const Vectors& others, int32_t other) {
+    return id == other_id && normals.x[k] * others.x[other] + normals.y[k] * others.y[other] +
+                                     normals.z[k] * others.z[other] >
+                                 ALIKE;
+}
+
+// Whether a pixel is of another face than its neighbour, which is as flat as the pixel beyond that.
+bool is_beside_face(const Chunk& c, int32_t i, int32_t other) {
+    const int32_t beyond = 2 * other - i;
+    return !is_alike(c.id[i], c.normal, i, c.id[other], c.normal, other) && beyond >= 0 &&
+           beyond < c.count && !c.empty[beyond] &&
+           is_alike(c.id[beyond], c.normal, beyond, c.id[other], c.normal, other);
+}
+
+// The angle to the mirrored ray of a neighbour that is of the same face or bends with it.
 float angle_beside(const Chunk& c, const Vectors& rays, int32_t i) {
     float least = 1e30f;
     for (int32_t other = i - 1; other <= i + 1; other += 2) {
         if (other < 0 || other >= c.count || c.empty[other] || c.id[other] != c.id[i]) continue;
+        if (is_beside_face(c, i, other)) continue;
         const float x = rays.x[other] - rays.x[i], y = rays.y[other] - rays.y[i],
                     z = rays.z[other] - rays.z[i];
         const float square = x * x + y * y + z * z;
@@ -249,14 +266,6 @@ bool choose(const Chunk& c, Looks& looks) {
         some |= looks.share[i] > 0.0f;
     }
     return some;
-}
-
-// Whether two surfaces are one and turned alike, so that what the rays of one met counts for both.
-bool is_alike(int32_t id, const Vectors& normals, int32_t k, int32_t other_id,
-              const Vectors& others, int32_t other) {
-    return id == other_id && normals.x[k] * others.x[other] + normals.y[k] * others.y[other] +
-                                     normals.z[k] * others.z[other] >
-                                 ALIKE;
 }
 
 // Whether what the rays of a pixel of a row met counts for another one, too.
