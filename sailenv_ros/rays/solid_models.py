@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary, WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.ray_types import RAY_INSTANCE
+from sailenv_ros.native.render_types import address
 from sailenv_ros.rays.model_triangles import joined, triangles_of
 from sailenv_ros.rays.triangle_tree import TriangleTree, triangle_tree
 from sailenv_ros.types.baked_light import Unwrapping
+from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Material, Mesh, Model
 
-__all__ = ["SolidModel", "solid_model"]
+__all__ = ["SolidModel", "SolidModels", "solid_model"]
+
+_MARGIN_M = 1e-4
+"""Balls and boxes around instances are larger by this: kernels have poses in floats."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,6 +50,42 @@ class SolidModel:
     centre: NDArray[np.float64]
     radius: float
     made_of: tuple[object, ...]
+
+
+class SolidModels:
+    """The surfaces of several instances; kept as long as this is.
+
+    Parameters
+    ----------
+    solids : sequence of SolidModel
+        Of each instance.
+    """
+
+    def __init__(self, solids: Sequence[SolidModel]) -> None:
+        self._kept = tuple(solids)
+        self._shapes = np.array([address(one.tree.record) for one in solids], np.uint64)
+        self._centres = np.array([one.centre for one in solids]).reshape(-1, 3)
+        halves = [(one.tree.high - one.tree.low) / 2.0 for one in solids]
+        self._halves = np.array(halves).reshape(-1, 3)
+        self._radii = np.array([one.radius for one in solids])
+
+    def at(self, poses: NDArray[np.float64]) -> tuple[NDArray[np.void], NDArray[np.float64]]:
+        """Return (N,) RAY_INSTANCE, where they stand alone, and (N, 6) boxes around them [m].
+
+        Parameters
+        ----------
+        poses : (N, 4, 4) float64
+            World from body.
+        """
+        turns = poses[:, :3, :3]
+        middles = np.einsum("nij,nj->ni", turns, self._centres) + poses[:, :3, 3]
+        halves = np.einsum("nij,nj->ni", np.abs(turns), self._halves) + _MARGIN_M
+        rows = np.zeros(len(poses), RAY_INSTANCE)
+        rows["shape_at"] = self._shapes
+        rows["body_from_world"] = invert(poses)[:, :3].reshape(-1, 12)
+        rows["sphere"][:, :3] = middles
+        rows["sphere"][:, 3] = self._radii * 1.0001 + _MARGIN_M
+        return rows, np.concatenate([middles - halves, middles + halves], axis=1)
 
 
 _Known = WeakValueDictionary[tuple[object, ...], SolidModel]

@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
-from sailenv_ros.native.ray_types import RAY_INSTANCE
 from sailenv_ros.native.render_types import address
-from sailenv_ros.rays.solid_models import SolidModel
+from sailenv_ros.rays.solid_models import SolidModel, SolidModels
 from sailenv_ros.types.baked_light import LightChart
-from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.model import Model
 
 __all__ = ["Change", "PlacedInstance", "placed_instances", "ray_instances"]
@@ -75,26 +73,12 @@ def placed_instances(
 
 def ray_instances(things: list[PlacedInstance]) -> tuple[NDArray[np.void], NDArray[np.float64]]:
     """Return (N,) RAY_INSTANCE, and (N, 6) float64 boxes around them; `things` keeps the memory."""
-    rows = np.zeros(len(things), RAY_INSTANCE)
-    boxes = np.zeros((len(things), 6))
-    for row, box, thing in zip(rows, boxes, things, strict=True):
-        shape, pose = thing.shape, thing.pose
-        row["shape_at"] = address(shape.tree.record)
+    poses = np.array([thing.pose for thing in things]).reshape(-1, 4, 4)
+    rows, boxes = SolidModels([thing.shape for thing in things]).at(poses)
+    for row, thing in zip(rows, things, strict=True):
         row["radiance_at"] = address(thing.radiance)
-        row["body_from_world"] = invert(pose)[:3].reshape(-1)
-        centre = pose[:3, :3] @ shape.centre + pose[:3, 3]
-        row["sphere"] = (*centre, shape.radius * 1.0001 + 1e-4)
         if thing.chart is not None:
             row["chart"] = (*thing.chart.offset, *thing.chart.scale)
             row["has_chart"] = 1
         row["before"], row["after"] = thing.before, thing.after
-        box[:3], box[3:] = _box(shape, pose)
     return rows, boxes
-
-
-def _box(
-    shape: SolidModel, pose: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    middle = pose[:3, :3] @ shape.centre + pose[:3, 3]
-    half = np.abs(pose[:3, :3]) @ ((shape.tree.high - shape.tree.low) / 2.0) + 1e-4
-    return middle - half, middle + half

@@ -5,6 +5,7 @@ Snapshots and a `PartTable` come in, a TRACED_SCENE for the shading kernel goes 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,21 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.ray_kernels import build_tree
-from sailenv_ros.native.ray_types import RAY_INSTANCE
 from sailenv_ros.native.render_types import PART, address, record
 from sailenv_ros.native.traced_types import TRACED_INSTANCE, TRACED_SCENE
-from sailenv_ros.rays.solid_models import SolidModel, solid_model
+from sailenv_ros.rays.solid_models import SolidModel, SolidModels, solid_model
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.scene.drawn_meshes import meshes_of, unwrappings
-from sailenv_ros.types.baked_light import Unwrapping
-from sailenv_ros.types.geometry import invert
+from sailenv_ros.types.baked_light import LightChart, Unwrapping
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
 __all__ = ["TracedScene"]
-
-_MARGIN_M = 1e-4
-"""Boxes around instances are larger by this: poses are in floats there."""
 
 _Scale = tuple[float, float, float]
 
@@ -53,11 +49,11 @@ class TracedScene:
 
     def __init__(self) -> None:
         self._models: dict[tuple[int, int, _Scale], tuple[object, _TracedModel]] = {}
-        self._of: tuple[SceneContents, NDArray[np.void]] | None = None
+        self._of: tuple[object, object] | None = None
+        self._opaque: NDArray[np.void] | None = None
         self._places = np.zeros(0, np.intp)
+        self._solids = SolidModels(())
         self._rows = np.zeros(0, TRACED_INSTANCE)
-        self._centres = np.zeros((0, 3))
-        self._halves = np.zeros((0, 3))
         self._poses = np.full((0, 4, 4), np.nan)
         self._kept: tuple[NDArray[Any], ...] = ()
 
@@ -69,6 +65,7 @@ class TracedScene:
         Parameters
         ----------
         snapshot : WorldSnapshot
+            In baked light.
         table : PartTable
             That shows it.
         still : (N,) bool
@@ -80,20 +77,23 @@ class TracedScene:
             Points into arrays of this object and of the table; good until the next call.
         """
         contents = snapshot.contents
-        shown = self._of is not None and self._of[0] is contents and self._of[1] is table.opaque
-        if not shown:
-            self._show(contents, table)
-            self._of = contents, table.opaque
-        poses = snapshot.world_from_body[self._places]
-        rows = self._rows
+        assert contents.baked is not None
+        instances, charts = contents.instances, contents.baked.charts
+        # Lights change more often than what they shine on.
+        same = self._of is not None and self._of[0] is instances and self._of[1] is charts
+        if not same:
+            self._show(contents, charts)
+            self._of = instances, charts
+        rows, opaque = self._rows, table.opaque
+        if not same or self._opaque is not opaque:
+            first = np.searchsorted(opaque["instance"], self._places)
+            rows["parts_at"] = address(opaque) + first * PART.itemsize
+            self._opaque = opaque
         rows["at_baked_pose"] = still[self._places]
-        if not shown or not np.array_equal(poses, self._poses):
+        poses = snapshot.world_from_body[self._places]
+        if not same or not np.array_equal(poses, self._poses):
             self._poses = poses
-            rows["placed"]["body_from_world"] = invert(poses)[:, :3].reshape(-1, 12)
-            turns = poses[:, :3, :3]
-            middles = np.einsum("nij,nj->ni", turns, self._centres) + poses[:, :3, 3]
-            halves = np.einsum("nij,nj->ni", np.abs(turns), self._halves) + _MARGIN_M
-            boxes = np.concatenate([middles - halves, middles + halves], axis=1)
+            rows["placed"], boxes = self._solids.at(poses)
             nodes, order = build_tree(boxes, 1)
             made = record(
                 TRACED_SCENE,
@@ -105,41 +105,33 @@ class TracedScene:
             self._kept = made, nodes, order
         return self._kept[0]
 
-    def _show(self, contents: SceneContents, table: PartTable) -> None:
+    def _show(self, contents: SceneContents, charts: Mapping[int, LightChart]) -> None:
         models: dict[tuple[int, int, _Scale], tuple[object, _TracedModel]] = {}
-        charts = {} if contents.baked is None else contents.baked.charts
-        found: list[tuple[int, _TracedModel, _Scale]] = []
+        places, found = [], []
         for place, (drawn, flat) in enumerate(
             zip(contents.instances, unwrappings(contents), strict=True)
         ):
             if drawn.deforms or not drawn.model.triangle_count:
                 continue
             key = id(drawn.model), id(flat), drawn.scale
-            if key not in models:
+            made = models.get(key) or self._models.get(key)
+            if made is None:
                 chart = charts.get(drawn.instance.id)
-                made = self._models.get(key)
-                if made is None:
-                    baked = None if chart is None else chart.unwrapping
-                    solid = solid_model(drawn.model, drawn.scale, baked)
-                    made = (drawn.model, flat), _traced_model(drawn.model, flat, solid)
-                models[key] = made
-            found.append((place, models[key][1], drawn.scale))
+                # The tree that relighting has.
+                baked = None if chart is None else chart.unwrapping
+                solid = solid_model(drawn.model, drawn.scale, baked)
+                made = (drawn.model, flat), _traced_model(drawn.model, flat, solid)
+            models[key] = made
+            places.append(place)
+            found.append(made[1])
         self._models = models
-        self._places = np.array([place for place, _, _ in found], np.intp)
-        self._centres = np.array([one.solid.centre for _, one, _ in found]).reshape(-1, 3)
-        trees = [one.solid.tree for _, one, _ in found]
-        self._halves = np.array([(t.high - t.low) / 2.0 for t in trees]).reshape(-1, 3)
-        rows = np.zeros(len(found), TRACED_INSTANCE)
-        placed = np.zeros(len(found), RAY_INSTANCE)
-        placed["shape_at"] = [address(tree.record) for tree in trees]
-        rows["placed"] = placed
-        rows["part_of_at"] = [address(one.part_of) for _, one, _ in found]
-        rows["vertices_at"] = [address(one.vertices) for _, one, _ in found]
-        first = np.searchsorted(table.opaque["instance"], self._places)
-        rows["parts_at"] = address(table.opaque) + first * PART.itemsize
-        scales = np.array([scale for _, _, scale in found]).reshape(-1, 3)
+        self._places = np.array(places, np.intp)
+        self._solids = SolidModels([one.solid for one in found])
+        scales = np.array([contents.instances[place].scale for place in places]).reshape(-1, 3)
+        rows = self._rows = np.zeros(len(found), TRACED_INSTANCE)
+        rows["part_of_at"] = [address(one.part_of) for one in found]
+        rows["vertices_at"] = [address(one.vertices) for one in found]
         rows["inverse_scale"] = 1.0 / scales
-        self._rows = rows
 
 
 def _traced_model(model: Model, flat: Unwrapping | None, solid: SolidModel) -> _TracedModel:
