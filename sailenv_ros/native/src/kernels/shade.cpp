@@ -71,10 +71,7 @@ void place_points(const Shading& s, Chunk& c) {
     for (int32_t i = 0; i < c.padded; i += 8) {
         const Vec3x8 begin = begin_of_ray(s, load(c.at_x + i), load(c.at_y + i));
         c.point.set(i, begin + c.ray.at(i) * load(c.depth + i));
-        store(c.roughness + i, clamp8(load(c.roughness + i), LEAST_ROUGHNESS, 1.0f));
-        store(c.metallic + i, clamp8(load(c.metallic + i), 0.0f, 1.0f));
-        const Vec3x8 root = c.base.at(i);
-        c.base.set(i, root * root);
+        finish_material(c, i);
     }
 }
 

@@ -80,6 +80,15 @@ void write_attributes(const Shading& s, Chunk& c);
 // Normal, roughness and metallic as the detail map has them; see shaders/textures.glsl.
 void apply_detail_maps(const Shading& s, Chunk& c);
 
+// Brings eight pixels' materials into the bounds of the light's model, and base colours, of which
+// the square roots were interpolated, to linear ones.
+LANES_INLINE void finish_material(Chunk& c, int32_t i) {
+    store(c.roughness + i, clamp8(load(c.roughness + i), LEAST_ROUGHNESS, 1.0f));
+    store(c.metallic + i, clamp8(load(c.metallic + i), 0.0f, 1.0f));
+    const Vec3x8 root = c.base.at(i);
+    c.base.set(i, root * root);
+}
+
 // The light around each point and the share of the main light that arrives: from baked light, and
 // from an analytic sky and one shadow map where nothing is baked.
 void light_from_bake(const Shading& s, Chunk& c);

@@ -11,6 +11,14 @@
 namespace sailenv {
 namespace {
 
+vec3 vector_at(const Vectors& v, int32_t i) { return {v.x[i], v.y[i], v.z[i]}; }
+void put(Vectors& v, int32_t i, vec3 value) {
+    v.x[i] = value.x;
+    v.y[i] = value.y;
+    v.z[i] = value.z;
+}
+vec3 unit(vec3 a) { return a * (1.0f / std::sqrt(dot(a, a))); }
+
 constexpr float BEGIN_M = 5e-4f;  // a point lies that far from its surface, at most
 
 // From where on a surface mirrors pictures of the room, more and more, and alone.
@@ -45,23 +53,25 @@ constexpr float SLOPE_Y[LOBE] = {-0.56852f, 0.67262f,  -0.52139f, 0.12766f,  -1.
                                  0.81845f,  -0.13461f, -0.18134f, 0.17932f};
 
 // What of a chunk is looked at by rays.
-struct Looks {
-    alignas(32) float share[CHUNK];  // of what rays meet in what is mirrored; 0 for none
-    alignas(32) float mirrored[CHUNK];
-    float angle[CHUNK];   // to the ray of the pixel beside
-    int32_t step[CHUNK];  // each so many pixels look; 1 for all
-    int32_t rays_of[CHUNK];
+struct TracedPixels {
+    alignas(32) float share[CHUNK];     // of what rays meet in what is mirrored; 0 for none
+    alignas(32) float mirrored[CHUNK];  // share of all light that is sent back
+    float angle[CHUNK];                 // to the ray of the pixel beside
+    int32_t step[CHUNK];                // each so many pixels look; 1 for all
+    int32_t ray_count[CHUNK];
     Vectors rays;
-    TracedRow met;
+    TracedRow row;
 };
 
-struct Met {
+struct SceneHit {
     Hit hit;
     const TracedInstance* instance = nullptr;
 };
 
-Met first_met(const TracedScene& scene, const Ray& r) {
-    Met met;
+SceneHit closest_hit(const TracedScene& scene, vec3 from, vec3 ray) {
+    const float o[3] = {from.x, from.y, from.z}, d[3] = {ray.x, ray.y, ray.z};
+    const Ray r = ray_of(o, d, BEGIN_M);
+    SceneHit met;
     if (scene.count == 0) return met;
     walk_tree<true>(scene.nodes, box_ray(r.o, r.d, 0.0f), 0.0f, met.hit.t,
                     [&](int32_t leaf, float) {
@@ -75,7 +85,7 @@ Met first_met(const TracedScene& scene, const Ray& r) {
 }
 
 // Whether it is drawn. Backs are not: where one is met, the ray is inside of something.
-bool is_drawn(const Met& met) {
+bool is_drawn(const SceneHit& met) {
     return met.instance != nullptr && met.hit.front &&
            met.instance->part_of[met.instance->placed.shape->order[met.hit.triangle]] >= 0;
 }
@@ -83,9 +93,7 @@ bool is_drawn(const Met& met) {
 // Whether two surfaces are one and turned alike, so that what the rays of one met counts for both.
 bool is_alike(int32_t id, const Vectors& normals, int32_t k, int32_t other_id,
               const Vectors& others, int32_t other) {
-    return id == other_id && normals.x[k] * others.x[other] + normals.y[k] * others.y[other] +
-                                     normals.z[k] * others.z[other] >
-                                 ALIKE;
+    return id == other_id && dot(vector_at(normals, k), vector_at(others, other)) > ALIKE;
 }
 
 // Whether a pixel is of another face than its neighbour, which is as flat as the pixel beyond that.
@@ -97,21 +105,20 @@ bool is_beside_face(const Chunk& c, int32_t i, int32_t other) {
 }
 
 // The angle to the mirrored ray of a neighbour that is of the same face or bends with it.
-float angle_beside(const Chunk& c, const Vectors& rays, int32_t i) {
+float ray_spread(const Chunk& c, const Vectors& rays, int32_t i) {
     float least = 1e30f;
     for (int32_t other = i - 1; other <= i + 1; other += 2) {
         if (other < 0 || other >= c.count || c.empty[other] || c.id[other] != c.id[i]) continue;
         if (is_beside_face(c, i, other)) continue;
-        const float x = rays.x[other] - rays.x[i], y = rays.y[other] - rays.y[i],
-                    z = rays.z[other] - rays.z[i];
-        const float square = x * x + y * y + z * z;
-        least = square < least ? square : least;
+        const vec3 apart = vector_at(rays, other) - vector_at(rays, i);
+        least = min(least, dot(apart, apart));
     }
     return least < 1e30f ? std::sqrt(least) : USUAL_ANGLE;
 }
 
 // What a triangle's corners know of a place on it, and what its part is made of.
-void set_met(const Met& met, vec3 from, vec3 ray, float way, float angle, Chunk& c, int32_t i) {
+void set_hit(const SceneHit& met, vec3 from, vec3 ray, float distance, float angle, Chunk& c,
+             int32_t i) {
     const TracedInstance& one = *met.instance;
     const RayShape& shape = *one.placed.shape;
     const int32_t triangle = shape.order[met.hit.triangle];
@@ -127,34 +134,26 @@ void set_met(const Met& met, vec3 from, vec3 ray, float way, float angle, Chunk&
     const float* m = one.placed.body_from_world;
     const float own[3] = {known[0] * one.inverse_scale[0], known[1] * one.inverse_scale[1],
                           known[2] * one.inverse_scale[2]};
-    vec3 normal(own[0] * m[0] + own[1] * m[4] + own[2] * m[8],
-                own[0] * m[1] + own[1] * m[5] + own[2] * m[9],
-                own[0] * m[2] + own[1] * m[6] + own[2] * m[10]);
-    const float length = std::sqrt(dot(normal, normal));
-    normal =
-        normal * ((dot(normal, ray) > 0.0f ? -1.0f : 1.0f) / (length > 1e-20f ? length : 1.0f));
-    c.normal.x[i] = normal.x;
-    c.normal.y[i] = normal.y;
-    c.normal.z[i] = normal.z;
+    const vec3 turned(own[0] * m[0] + own[1] * m[4] + own[2] * m[8],
+                      own[0] * m[1] + own[1] * m[5] + own[2] * m[9],
+                      own[0] * m[2] + own[1] * m[6] + own[2] * m[10]);
+    const float length = std::sqrt(dot(turned, turned));
+    const float towards_eye = dot(turned, ray) > 0.0f ? -1.0f : 1.0f;
+    const vec3 normal = turned * (towards_eye / (length > 1e-20f ? length : 1.0f));
+    put(c.normal, i, normal);
     c.u[i] = known[3];
     c.v[i] = known[4];
     const bool charted = part.has_chart && one.at_baked_pose;
     c.light_u[i] = charted ? known[5] * part.chart[2] + part.chart[0] : 0.0f;
     c.light_v[i] = charted ? known[6] * part.chart[3] + part.chart[1] : 0.0f;
-    c.base.x[i] = part.colour[0];
-    c.base.y[i] = part.colour[1];
-    c.base.z[i] = part.colour[2];
+    put(c.base, i, {part.colour[0], part.colour[1], part.colour[2]});
     c.roughness[i] = part.roughness;
     c.metallic[i] = part.metallic;
     c.emission[i] = part.emission;
     c.id[i] = part.id;
     c.empty[i] = 0;
-    c.ray.x[i] = ray.x;
-    c.ray.y[i] = ray.y;
-    c.ray.z[i] = ray.z;
-    c.point.x[i] = from.x + ray.x * met.hit.t;
-    c.point.y[i] = from.y + ray.y * met.hit.t;
-    c.point.z[i] = from.z + ray.z * met.hit.t;
+    put(c.ray, i, ray);
+    put(c.point, i, from + ray * met.hit.t);
     c.colour_texels[i] = WHITE_TEXELS;
     c.colour_log2[i] = NO_MAP;
     c.ux[i] = c.vx[i] = c.uy[i] = c.vy[i] = 0.0f;
@@ -171,44 +170,37 @@ void set_met(const Met& met, vec3 from, vec3 ray, float way, float angle, Chunk&
     const float du = corner[1][3] - corner[0][3], dv = corner[1][4] - corner[0][4];
     const float eu = corner[2][3] - corner[0][3], ev = corner[2][4] - corner[0][4];
     const float area = std::sqrt(dot(across, across)), texture_area = std::fabs(du * ev - dv * eu);
-    const float side = angle * (way + met.hit.t) * std::sqrt(texture_area / (area + 1e-20f));
+    const float side = angle * (distance + met.hit.t) * std::sqrt(texture_area / (area + 1e-20f));
     c.ux[i] = c.vy[i] = side;
 }
 
-void set_nothing(Chunk& c, int32_t i) {
+void set_empty(Chunk& c, int32_t i) {
     c.empty[i] = -1;
     c.id[i] = 0;
     c.colour_texels[i] = WHITE_TEXELS;
     c.colour_log2[i] = NO_MAP;
-    c.base.x[i] = c.base.y[i] = c.base.z[i] = 0.0f;
+    put(c.base, i, {0.0f, 0.0f, 0.0f});
     c.roughness[i] = 1.0f;
     c.metallic[i] = c.emission[i] = 0.0f;
-    c.normal.x[i] = c.normal.y[i] = 0.0f;
-    c.normal.z[i] = 1.0f;
-    c.ray.x[i] = c.ray.y[i] = 0.0f;
-    c.ray.z[i] = -1.0f;
-    c.point.x[i] = c.point.y[i] = c.point.z[i] = 0.0f;
+    put(c.normal, i, {0.0f, 0.0f, 1.0f});
+    put(c.ray, i, {0.0f, 0.0f, -1.0f});
+    put(c.point, i, {0.0f, 0.0f, 0.0f});
     c.u[i] = c.v[i] = c.light_u[i] = c.light_v[i] = 0.0f;
     c.ux[i] = c.vx[i] = c.uy[i] = c.vy[i] = 0.0f;
 }
 
-void begin_met(Chunk& c) {
+void begin_hits(Chunk& c) {
     c.hit = c.parallel = true;
     c.missed = c.coloured = c.detailed = false;
 }
 
 // The light that the first `count` places that were met send back along the rays.
-void light_met(const Shading& s, Chunk& c, int32_t count) {
+void shade_hits(const Shading& s, Chunk& c, int32_t count) {
     c.count = count;
     c.padded = (count + 7) & ~7;
-    for (int32_t k = count; k < c.padded; k++) set_nothing(c, k);
+    for (int32_t k = count; k < c.padded; k++) set_empty(c, k);
     if (c.coloured) colour_for_picture(c);
-    for (int32_t i = 0; i < c.padded; i += 8) {
-        const Vec3x8 root = c.base.at(i);
-        c.base.set(i, root * root);
-        store(c.roughness + i, clamp8(load(c.roughness + i), LEAST_ROUGHNESS, 1.0f));
-        store(c.metallic + i, clamp8(load(c.metallic + i), 0.0f, 1.0f));
-    }
+    for (int32_t i = 0; i < c.padded; i += 8) finish_material(c, i);
     light_from_bake(s, c);
     mirror_surroundings(s, c);
     reflect_to_eye(s, c);
@@ -223,12 +215,12 @@ int32_t step_of(float roughness, float angle, bool much) {
 }
 
 // Finds the pixels that are worth rays.
-bool choose(const Chunk& c, Looks& looks) {
+bool choose_pixels(const Chunk& c, TracedPixels& pixels) {
     bool some = false;
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 roughness = load(c.roughness + i);
         const i8 smooth = (roughness < ROUGH) & ~load(c.empty + i);
-        store(looks.share + i, splat(0.0f));
+        store(pixels.share + i, splat(0.0f));
         if (!any(smooth)) continue;
         const Vec3x8 ray = c.ray.at(i);
         const f8 cosine = abs8(dot(c.normal.at(i), ray) * inverse_length(ray)) + 1e-4f;
@@ -243,27 +235,24 @@ bool choose(const Chunk& c, Looks& looks) {
         const i8 uneven =
             c.detailed ? (load(c.relief + i) > 0.0f) & (mirrored < LARGE_SHARE) : i8{};
         const i8 chosen = smooth & ~uneven;
-        store(looks.share + i, chosen ? share : splat(0.0f));
-        store(looks.mirrored + i, mirrored);
-        looks.rays.set(i, mirrored_ray(c, i));
+        store(pixels.share + i, chosen ? share : splat(0.0f));
+        store(pixels.mirrored + i, mirrored);
+        pixels.rays.set(i, mirrored_ray(c, i));
         some |= any(chosen & (share > 0.0f));
     }
     if (!some) return false;
     some = false;
     for (int32_t i = 0; i < c.count; i++) {
-        looks.met.weight[i] = 0.0f;
-        looks.rays_of[i] = 0;
-        looks.met.sum.x[i] = looks.met.sum.y[i] = looks.met.sum.z[i] = 0.0f;
-        looks.met.normal.x[i] = c.normal.x[i];
-        looks.met.normal.y[i] = c.normal.y[i];
-        looks.met.normal.z[i] = c.normal.z[i];
-        looks.met.id[i] = c.id[i];
-        if (!(looks.share[i] > 0.0f)) continue;
-        const float angle = looks.angle[i] = angle_beside(c, looks.rays, i);
-        const float bend = clamp((angle - FLAT) * (1.0f / (BENT - FLAT)), 0.0f, 1.0f);
-        looks.share[i] *= 1.0f - bend * bend * (3.0f - 2.0f * bend);
-        looks.step[i] = step_of(c.roughness[i], angle, looks.mirrored[i] >= LARGE_SHARE);
-        some |= looks.share[i] > 0.0f;
+        pixels.row.weight[i] = 0.0f;
+        pixels.ray_count[i] = 0;
+        put(pixels.row.sum, i, {0.0f, 0.0f, 0.0f});
+        put(pixels.row.normal, i, vector_at(c.normal, i));
+        pixels.row.id[i] = c.id[i];
+        if (!(pixels.share[i] > 0.0f)) continue;
+        const float angle = pixels.angle[i] = ray_spread(c, pixels.rays, i);
+        pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
+        pixels.step[i] = step_of(c.roughness[i], angle, pixels.mirrored[i] >= LARGE_SHARE);
+        some |= pixels.share[i] > 0.0f;
     }
     return some;
 }
@@ -276,13 +265,13 @@ bool shares(const Chunk& c, int32_t i, const TracedRow& row, int32_t other) {
 
 // Whether pixels that look anyway do for one: those of `above`, the row before it, or, where that
 // is null, of its own row.
-bool does_without(const Chunk& c, const Looks& looks, const TracedRow* above, int32_t i) {
-    const int32_t step = looks.step[i], left = i - i % step;
+bool neighbours_do(const Chunk& c, const TracedPixels& pixels, const TracedRow* above, int32_t i) {
+    const int32_t step = pixels.step[i], left = i - i % step;
     if (above == nullptr && left == i) return false;
     for (int32_t other = left; other <= left + step && other < c.count; other += step) {
         if (above != nullptr) {
             if (shares(c, i, *above, other)) return true;
-        } else if (looks.share[other] > 0.0f && other % looks.step[other] == 0 &&
+        } else if (pixels.share[other] > 0.0f && other % pixels.step[other] == 0 &&
                    is_alike(c.id[i], c.normal, i, c.id[other], c.normal, other)) {
             return true;
         }
@@ -291,80 +280,76 @@ bool does_without(const Chunk& c, const Looks& looks, const TracedRow* above, in
 }
 
 // Says how many rays each pixel has; `before` is a row above, or null for pixels that lie anywhere.
-void count_rays(const Chunk& c, const TracedRow* before, Looks& looks) {
+void count_rays(const Chunk& c, const TracedRow* before, TracedPixels& pixels) {
     for (int32_t i = 0; i < c.count; i++) {
-        if (!(looks.share[i] > 0.0f)) continue;
-        const bool much = looks.mirrored[i] >= LARGE_SHARE;
-        looks.rays_of[i] = much && looks.angle[i] > CURVED ? OWN_RAYS : 1;
-        if (before == nullptr || looks.step[i] == 1) continue;
-        const bool flat = looks.angle[i] < FLAT_PLANE || looks.step[i] > 2;
-        looks.rays_of[i] =
-            much ? (flat ? ROUGH_RAYS : OWN_RAYS) : (looks.step[i] > 2 ? OWN_RAYS : 1);
+        if (!(pixels.share[i] > 0.0f)) continue;
+        const bool much = pixels.mirrored[i] >= LARGE_SHARE;
+        pixels.ray_count[i] = much && pixels.angle[i] > CURVED ? OWN_RAYS : 1;
+        if (before == nullptr || pixels.step[i] == 1) continue;
+        const bool flat = pixels.angle[i] < FLAT_PLANE || pixels.step[i] > 2;
+        pixels.ray_count[i] =
+            much ? (flat ? ROUGH_RAYS : OWN_RAYS) : (pixels.step[i] > 2 ? OWN_RAYS : 1);
         const TracedRow* above = (c.y & 1) != 0 && before->y == c.y - 1 ? before : nullptr;
-        if (does_without(c, looks, above, i)) looks.rays_of[i] = 0;
+        if (neighbours_do(c, pixels, above, i)) pixels.ray_count[i] = 0;
     }
 }
 
 // One of the rays of a pixel's lobe.
-vec3 ray_of_lobe(const Shading& s, const Chunk& c, const Looks& looks, int32_t i, int32_t number) {
+vec3 lobe_ray(const Shading& s, const Chunk& c, const TracedPixels& pixels, int32_t i,
+              int32_t number) {
     const float scale = s.table == nullptr ? 1.0f : 0.5f * static_cast<float>(s.width);
     const int32_t column = static_cast<int32_t>(std::floor(c.at_x[i] * scale + 0.5f));
     const int32_t row = static_cast<int32_t>(std::floor(c.at_y[i] * scale + 0.5f));
     // Those who share have other rays each.
     const int32_t begin =
-        looks.step[i] > 1 ? column / looks.step[i] + 3 * (row >> 1) : 5 * column + 7 * row;
-    const int32_t k = (begin + number * (LOBE / looks.rays_of[i])) & (LOBE - 1);
-    const float rough = c.roughness[i] * c.roughness[i], least = 0.25f * looks.angle[i];
+        pixels.step[i] > 1 ? column / pixels.step[i] + 3 * (row >> 1) : 5 * column + 7 * row;
+    const int32_t k = (begin + number * (LOBE / pixels.ray_count[i])) & (LOBE - 1);
+    const float rough = c.roughness[i] * c.roughness[i], least = 0.25f * pixels.angle[i];
     const float wide = rough > least ? rough : least;
-    const vec3 n(c.normal.x[i], c.normal.y[i], c.normal.z[i]);
+    const vec3 n = vector_at(c.normal, i);
     // Two axes across the normal (Duff et al. 2017, "Building an orthonormal basis, revisited").
     const float sign = n.z < 0.0f ? -1.0f : 1.0f, a = -1.0f / (sign + n.z), b = n.x * n.y * a;
     const vec3 first(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
     const vec3 second(b, sign + n.y * n.y * a, -n.y);
-    vec3 facet = n + first * (wide * SLOPE_X[k]) + second * (wide * SLOPE_Y[k]);
-    facet = facet * (1.0f / std::sqrt(dot(facet, facet)));
-    vec3 along(c.ray.x[i], c.ray.y[i], c.ray.z[i]);
-    along = along * (1.0f / std::sqrt(dot(along, along)));
+    const vec3 facet = unit(n + first * (wide * SLOPE_X[k]) + second * (wide * SLOPE_Y[k]));
+    const vec3 along = unit(vector_at(c.ray, i));
     const vec3 ray = along - facet * (2.0f * dot(along, facet));
     // Below the surface there is nothing to be seen.
-    if (dot(ray, n) < 0.02f) return vec3(looks.rays.x[i], looks.rays.y[i], looks.rays.z[i]);
+    if (dot(ray, n) < 0.02f) return vector_at(pixels.rays, i);
     return ray;
 }
 
 // Follows one ray of each pixel that has so many, and adds what they meet.
-void look(const Shading& s, const Chunk& c, int32_t number, Looks& looks) {
-    Chunk there;
+void trace_rays(const Shading& s, const Chunk& c, int32_t number, TracedPixels& pixels) {
+    Chunk hits;
     int32_t from[CHUNK];
     float weights[CHUNK];
-    begin_met(there);
+    begin_hits(hits);
     int32_t count = 0;
     for (int32_t i = 0; i < c.count; i++) {
-        if (number >= looks.rays_of[i]) continue;
-        const vec3 begin(c.point.x[i], c.point.y[i], c.point.z[i]);
-        const vec3 ray = ray_of_lobe(s, c, looks, i, number);
-        const float o[3] = {begin.x, begin.y, begin.z}, d[3] = {ray.x, ray.y, ray.z};
-        const Met met = first_met(*s.light->traced, ray_of(o, d, BEGIN_M));
-        const float weight = dot(ray, vec3(c.normal.x[i], c.normal.y[i], c.normal.z[i]));
-        looks.met.weight[i] += weight;
+        if (number >= pixels.ray_count[i]) continue;
+        const vec3 begin = vector_at(c.point, i);
+        const vec3 ray = lobe_ray(s, c, pixels, i, number);
+        const SceneHit met = closest_hit(*s.light->traced, begin, ray);
+        const float weight = dot(ray, vector_at(c.normal, i));
+        pixels.row.weight[i] += weight;
         weights[count] = weight;
         if (!is_drawn(met)) {
-            looks.met.sum.x[i] += c.mirrored.x[i] * weight;
-            looks.met.sum.y[i] += c.mirrored.y[i] * weight;
-            looks.met.sum.z[i] += c.mirrored.z[i] * weight;
+            const vec3 sum = vector_at(pixels.row.sum, i);
+            put(pixels.row.sum, i, sum + vector_at(c.mirrored, i) * weight);
             continue;
         }
-        const vec3 along(c.ray.x[i], c.ray.y[i], c.ray.z[i]);
-        const float way = c.depth[i] * std::sqrt(dot(along, along));
+        const vec3 along = vector_at(c.ray, i);
+        const float distance = c.depth[i] * std::sqrt(dot(along, along));
         const float rough = 0.5f * c.roughness[i] * c.roughness[i];
-        set_met(met, begin, ray, way, max(looks.angle[i], rough), there, count);
+        set_hit(met, begin, ray, distance, max(pixels.angle[i], rough), hits, count);
         from[count++] = i;
     }
     if (count == 0) return;
-    light_met(s, there, count);
+    shade_hits(s, hits, count);
     for (int32_t k = 0; k < count; k++) {
-        looks.met.sum.x[from[k]] += there.light.x[k] * weights[k];
-        looks.met.sum.y[from[k]] += there.light.y[k] * weights[k];
-        looks.met.sum.z[from[k]] += there.light.z[k] * weights[k];
+        const vec3 sum = vector_at(pixels.row.sum, from[k]);
+        put(pixels.row.sum, from[k], sum + vector_at(hits.light, k) * weights[k]);
     }
 }
 
@@ -376,7 +361,7 @@ void add_around(const Chunk& c, int32_t i, int32_t step, int32_t reach, float sh
         const int32_t away = other < i ? i - other : other - i;
         if (away >= reach || !shares(c, i, row, other)) continue;
         const float part = share * static_cast<float>(reach - away);
-        sum = sum + vec3(row.sum.x[other], row.sum.y[other], row.sum.z[other]) * part;
+        sum = sum + vector_at(row.sum, other) * part;
         weight += row.weight[other] * part;
     }
 }
@@ -384,40 +369,38 @@ void add_around(const Chunk& c, int32_t i, int32_t step, int32_t reach, float sh
 }  // namespace
 
 void trace_reflections(const Shading& s, Chunk& c, TracedRow* before) {
-    Looks looks;
-    if (!choose(c, looks)) return;
-    count_rays(c, before, looks);
-    for (int32_t number = 0; number < ROUGH_RAYS; number++) look(s, c, number, looks);
+    TracedPixels pixels;
+    if (!choose_pixels(c, pixels)) return;
+    count_rays(c, before, pixels);
+    for (int32_t number = 0; number < ROUGH_RAYS; number++) trace_rays(s, c, number, pixels);
     const bool follows = before != nullptr && (before->y == c.y - 1 || before->y == c.y - 2);
     for (int32_t i = 0; i < c.count; i++) {
-        if (!(looks.share[i] > 0.0f)) continue;
-        const int32_t step = looks.step[i];
+        if (!(pixels.share[i] > 0.0f)) continue;
+        const int32_t step = pixels.step[i];
         const bool soft =
-            c.roughness[i] * c.roughness[i] > looks.angle[i] || looks.angle[i] > CURVED;
+            c.roughness[i] * c.roughness[i] > pixels.angle[i] || pixels.angle[i] > CURVED;
         const int32_t reach = before == nullptr ? 1 : step > 1 ? 2 * step : soft ? 2 : 1;
         vec3 sum(0.0f, 0.0f, 0.0f);
         float weight = 0.0f;
-        add_around(c, i, step, reach, 1.0f, looks.met, sum, weight);
+        add_around(c, i, step, reach, 1.0f, pixels.row, sum, weight);
         if (i % step != 0)
-            add_around(c, i, 1, 1, static_cast<float>(reach), looks.met, sum, weight);
+            add_around(c, i, 1, 1, static_cast<float>(reach), pixels.row, sum, weight);
         if (reach > 1 && follows) {
             add_around(c, i, step, reach, before->y == c.y - 1 ? 1.0f : 0.5f, *before, sum, weight);
         }
         if (!(weight > 0.0f)) continue;
         sum = sum * (1.0f / weight);
-        const float share = looks.share[i];
-        c.mirrored.x[i] += (sum.x - c.mirrored.x[i]) * share;
-        c.mirrored.y[i] += (sum.y - c.mirrored.y[i]) * share;
-        c.mirrored.z[i] += (sum.z - c.mirrored.z[i]) * share;
+        put(c.mirrored, i, mix(vector_at(c.mirrored, i), sum, pixels.share[i]));
     }
     if (before == nullptr || (c.y & 1) != 0) return;
-    *before = looks.met;
+    *before = pixels.row;
     before->y = c.y;
 }
 
-Vec3x8 trace_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 way, i8 wanted, Vec3x8 mirrored) {
-    Chunk there;
-    begin_met(there);
+Vec3x8 trace_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, i8 wanted,
+                   Vec3x8 mirrored) {
+    Chunk hits;
+    begin_hits(hits);
     int32_t groups[2], count = 0;
     for (int32_t group = 0; group < 8; group += 4) {
         int32_t k = group;
@@ -425,19 +408,18 @@ Vec3x8 trace_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 way, i8 wanted
         if (k == group + 4) continue;
         const vec3 begin(point.x[k], point.y[k], point.z[k]);
         const vec3 along(ray.x[k], ray.y[k], ray.z[k]);
-        const float o[3] = {begin.x, begin.y, begin.z}, d[3] = {along.x, along.y, along.z};
-        const Met met = first_met(*s.light->traced, ray_of(o, d, BEGIN_M));
+        const SceneHit met = closest_hit(*s.light->traced, begin, along);
         if (!is_drawn(met)) continue;
-        set_met(met, begin, along, way[k], USUAL_ANGLE, there, count);
+        set_hit(met, begin, along, distance[k], USUAL_ANGLE, hits, count);
         groups[count++] = group;
     }
     if (count == 0) return mirrored;
-    light_met(s, there, count);
+    shade_hits(s, hits, count);
     for (int32_t j = 0; j < count; j++) {
         for (int32_t k = groups[j]; k < groups[j] + 4; k++) {
-            mirrored.x[k] = there.light.x[j];
-            mirrored.y[k] = there.light.y[j];
-            mirrored.z[k] = there.light.z[j];
+            mirrored.x[k] = hits.light.x[j];
+            mirrored.y[k] = hits.light.y[j];
+            mirrored.z[k] = hits.light.z[j];
         }
     }
     return mirrored;
