@@ -109,7 +109,8 @@ float ray_spread(const Chunk& c, const Vectors& rays, int32_t i) {
     float least = 1e30f;
     for (int32_t other = i - 1; other <= i + 1; other += 2) {
         if (other < 0 || other >= c.count || c.empty[other] || c.id[other] != c.id[i]) continue;
-        if (is_beside_face(c, i, other)) continue;
+        // Of rougher parts no rays are known.
+        if (c.roughness[other] >= ROUGH || is_beside_face(c, i, other)) continue;
         const vec3 apart = vector_at(rays, other) - vector_at(rays, i);
         least = min(least, dot(apart, apart));
     }
@@ -214,8 +215,8 @@ int32_t step_of(float roughness, float angle, bool much) {
     return angles > SECOND || !much ? 2 : 1;
 }
 
-// Finds the pixels that are worth rays.
-bool choose_pixels(const Chunk& c, TracedPixels& pixels) {
+// Finds the pixels that are worth rays: of a row, whose neighbours tell how it bends, or anywhere.
+bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
     bool some = false;
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 roughness = load(c.roughness + i);
@@ -249,7 +250,8 @@ bool choose_pixels(const Chunk& c, TracedPixels& pixels) {
         put(pixels.row.normal, i, vector_at(c.normal, i));
         pixels.row.id[i] = c.id[i];
         if (!(pixels.share[i] > 0.0f)) continue;
-        const float angle = pixels.angle[i] = ray_spread(c, pixels.rays, i);
+        const float angle = pixels.angle[i] =
+            of_row ? ray_spread(c, pixels.rays, i) : USUAL_ANGLE;
         pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
         pixels.step[i] = step_of(c.roughness[i], angle, pixels.mirrored[i] >= LARGE_SHARE);
         some |= pixels.share[i] > 0.0f;
@@ -370,7 +372,7 @@ void add_around(const Chunk& c, int32_t i, int32_t step, int32_t reach, float sh
 
 void trace_reflections(const Shading& s, Chunk& c, TracedRow* before) {
     TracedPixels pixels;
-    if (!choose_pixels(c, pixels)) return;
+    if (!choose_pixels(c, before != nullptr, pixels)) return;
     count_rays(c, before, pixels);
     for (int32_t number = 0; number < ROUGH_RAYS; number++) trace_rays(s, c, number, pixels);
     const bool follows = before != nullptr && (before->y == c.y - 1 || before->y == c.y - 2);
