@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,8 +16,11 @@ TURN = 16
 """Points of a net that are enough by themselves; see `in_turns`."""
 
 
+@lru_cache(maxsize=32)
 def low_discrepancy_points(count: int) -> Floats:
     """Return (count, 2) float32: points of the unit square, one in each of its even parts.
+
+    The array is shared, and cannot be written to.
 
     Of a square of a power of two there is one in each of as many square cells.
 
@@ -28,7 +33,9 @@ def low_discrepancy_points(count: int) -> Floats:
         mirrored |= ((index >> np.uint64(bit)) & np.uint64(1)) << np.uint64(bits - 1 - bit)
     first = (index + 0.5) / count
     second = (mirrored + 0.5) / 2.0**bits
-    return np.stack([first, second], axis=1).astype(np.float32)
+    points = np.stack([first, second], axis=1).astype(np.float32)
+    points.flags.writeable = False
+    return points
 
 
 def in_turns(pattern: Floats) -> Floats:

@@ -115,10 +115,19 @@ class ObjectLighting:
     def __init__(self, scene: BakedScene, changes: Sequence[Change], points: SurfacePoints) -> None:
         self._scene, self._points = scene, points
         layers = scene.baked.layers
-        self._lights = [layer.light for layer in layers]
-        self._area = [n for n, one in enumerate(self._lights) if one and one.type == "area"]
+        self._layers = len(layers)
+        lights = {n: layer.light for n, layer in enumerate(layers) if layer.light is not None}
+        self._area = [n for n, light in lights.items() if light.type == "area"]
+        areas = (light_record(lights[n]) for n in self._area)
+        self._areas = np.concatenate([np.zeros(0, RAY_LIGHT), *areas])
+        self._lamps = {
+            n: light_record(light)
+            for n, light in lights.items()
+            if light.type not in ("area", "directional")
+        }
         probes = [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in layers]
         self._probes = np.ascontiguousarray(np.concatenate(probes, axis=-1))
+        self._everything = np.full(len(scene.sent), WHOLE, np.uint8)
         self._placed: dict[int, tuple[Place, PlacedInstance]] = {}
         self.world = ray_world(
             scene, changes, scene.sent, scene.sent, self._radiance_of_change, settled=True
@@ -143,7 +152,7 @@ class ObjectLighting:
         bounced, direct, weights = self._gathered(world, positions, normals, quality)
         axes = thing.world_from_body[:3, :3].T
         fit = _fit(positions, normals, weights, axes)
-        by_layer = (fit @ bounced).reshape(LIGHT_TERMS, len(self._lights), 3).transpose(1, 0, 2)
+        by_layer = (fit @ bounced).reshape(LIGHT_TERMS, self._layers, 3).transpose(1, 0, 2)
         return ObjectLight(
             bounced=np.ascontiguousarray(by_layer, np.float32),
             direct=np.ascontiguousarray((fit @ direct).T, np.float32),
@@ -184,23 +193,18 @@ class ObjectLighting:
         self, world: RayWorld, positions: Floats, normals: Floats, quality: Quality
     ) -> tuple[Doubles, Doubles, Doubles]:
         """Return (P, 3 L) bounced, (P, L) direct irradiance / pi, and (P,) how much each counts."""
-        area = [light_record(light) for light in self._lights if light and light.type == "area"]
         count = len(positions)
         found, bounced, of_areas, nearness = gather_change(
             world.record, positions, normals, np.full(count, WHOLE, np.uint8),
-            low_discrepancy_points(quality.object_rays),
-            np.concatenate([np.zeros(0, RAY_LIGHT), *area]),
+            low_discrepancy_points(quality.object_rays), self._areas,
             low_discrepancy_points(quality.area_rays), 0.0, inside_share=INSIDE_SHARE, threads=1,
         )  # fmt: skip
-        direct = np.zeros((count, len(self._lights)))
+        direct = np.zeros((count, self._layers))
         direct[:, self._area] = of_areas
-        everything = np.full(len(self._scene.sent), WHOLE, np.uint8)
-        for number, light in enumerate(self._lights):
-            if light is None or light.type in ("area", "directional"):
-                continue
+        for number, lamp in self._lamps.items():
             state, value, _ = direct_light_delta(
-                world.record, light_record(light), positions, normals, np.zeros(count, np.int32),
-                everything, low_discrepancy_points(quality.light_rays), threads=1,
+                world.record, lamp, positions, normals, np.zeros(count, np.int32),
+                self._everything, low_discrepancy_points(quality.light_rays), threads=1,
             )  # fmt: skip
             direct[:, number] = np.where(state > 0, value, 0.0)
         weights = np.clip(nearness.astype(np.float64) / HIDDEN_M, LEAST_WEIGHT, 1.0)

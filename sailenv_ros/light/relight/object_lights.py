@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import replace
+from typing import NamedTuple
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.found_light import KnownLight
@@ -65,7 +66,7 @@ class ObjectLights:
         self._seen: tuple[object, tuple[bytes, bytes]] = (None, (b"", b""))
         self._lightings: dict[tuple[object, ...], ObjectLighting] = {}
         self._still: dict[int, KnownLight] = {}
-        self._known: dict[int, KnownLight] = {}
+        self._known: dict[tuple[int, int], KnownLight] = {}
         self._light: Mapping[int, ObjectLight] = {}
 
     @property
@@ -103,7 +104,7 @@ class ObjectLights:
             return self._light
         self._seen = instances, seen
         self._movable.follow(snapshot)
-        things, near = self._movable.things, self._movable.near
+        things = self._movable.things
         if of != self._of:
             if self._of[:1] != (scene,):
                 self._lightings, self._still = {}, scene.found.objects
@@ -111,48 +112,102 @@ class ObjectLights:
             self._of, self._known = of, {}
         chosen = _chosen(things)
         affected = near_changes(scene, things, changes, FAR_M) if rough else frozenset()
-        known: dict[int, KnownLight] = {}
+        known: dict[tuple[int, int], KnownLight] = {}
         asked = []
         every = tuple(change.key for change in changes)
         for place in chosen:
-            thing, around = things[place], self._movable.around[place]
-            quality = QUICK if thing.moves else FINE
+            thing = things[place]
             counted = () if rough and thing.id not in affected else tuple(changes)
             moved = every if counted else ()
-            before = self._known.get(thing.id), self._still.get(thing.id)
-            fitting = (one for one in before if one and _is_of(one, moved, quality, around))
-            if (same := next(fitting, None)) is not None:
-                known[thing.id] = same
-                continue
-            key = moved, quality, around
-            if moved not in self._lightings:
-                self._lightings[moved] = ObjectLighting(scene, counted, self.points)
-            others = [things[other] for other in near[place]]
-            asked.append((self._lightings[moved], thing, others, quality, key))
+            for number, part in enumerate(self._parts(place)):
+                before = [self._known.get((thing.id, number))]
+                if number == 0:
+                    before.append(self._still.get(thing.id))
+                fitting = (one for one in before if one and _is_of(one, moved, part))
+                if (same := next(fitting, None)) is not None:
+                    known[thing.id, number] = same
+                    continue
+                if moved not in self._lightings:
+                    self._lightings[moved] = ObjectLighting(scene, counted, self.points)
+                others = [things[other] for other in part.near]
+                key = moved, part.quality, part.around
+                asked.append(
+                    (self._lightings[moved], thing, others, part.quality, (thing.id, number), key)
+                )
         if known != self._known or asked:
             with ExitStack() as opened:
                 # To begin a thread takes longer than the light on what moves.
                 apart = threads > 1 and len(asked) > 1
                 mapped = opened.enter_context(ThreadPoolExecutor(threads)).map if apart else map
                 found = mapped(lambda one: one[0].light_on(*one[1:4]), asked)
-                for (_, thing, *_, key), light in zip(asked, found, strict=True):
-                    known[thing.id] = key, light
+                for (*_, part_of, key), light in zip(asked, found, strict=True):
+                    known[part_of] = key, light
             self._known = known
             # What no change counts for is so again when furniture is back.
-            self._still |= {id_: one for id_, one in known.items() if not one[0][0]}
-            self._light = {id_: light for id_, (_, light) in known.items()}
+            self._still |= {
+                id_: one for (id_, number), one in known.items() if not (number or one[0][0])
+            }
+            self._light = {id_: _sum_of(known, id_) for id_, number in known if number == 0}
         return self._light
 
+    def _parts(self, place: int) -> tuple[_Part, ...]:
+        """Return what the light on an object is put together from.
 
-def _is_of(
-    known: KnownLight, moved: tuple[object, ...], quality: Quality, around: tuple[Place, ...]
-) -> bool:
-    """Return whether light is that of these changes, this quality, and objects at these places."""
+        What moves near an object that rests changes little of its light, and from frame to frame:
+        the difference that it makes is found with few rays, the same ones with it and without.
+        """
+        movable = self._movable
+        near, around = movable.near[place], movable.around[place]
+        if movable.things[place].moves:
+            return (_Part(QUICK, near, around),)
+        resting = [other for other in near if not movable.things[other].moves]
+        if len(resting) == len(near):
+            return (_Part(FINE, near, around),)
+        without = movable.places[place], *(movable.places[other] for other in resting)
+        return (
+            _Part(FINE, resting, without),
+            _Part(QUICK, near, around),
+            _Part(QUICK, resting, without),
+        )
+
+
+class _Part(NamedTuple):
+    """Light on an object as it would be by some of what stands near.
+
+    Attributes
+    ----------
+    quality : Quality
+    near : list of int
+        Places of the objects that count.
+    around : tuple of Place
+        Of the object itself and of these.
+    """
+
+    quality: Quality
+    near: list[int]
+    around: tuple[Place, ...]
+
+
+def _sum_of(known: Mapping[tuple[int, int], KnownLight], id_: int) -> ObjectLight:
+    """Return the light on an object from its parts: the first, or it, the second less the third."""
+    light = known[id_, 0][1]
+    if (id_, 1) not in known:
+        return light
+    with_all, without = known[id_, 1][1], known[id_, 2][1]
+    return replace(
+        light,
+        bounced=light.bounced + (with_all.bounced - without.bounced),
+        direct=light.direct + (with_all.direct - without.direct),
+    )
+
+
+def _is_of(known: KnownLight, moved: tuple[object, ...], part: _Part) -> bool:
+    """Return whether light is that of these changes, and of this part."""
     of_changes, of_quality, of_places = known[0]
     # The same objects, as a rule: to compare what is in them takes a hundred times as long.
     return (
-        of_quality is quality
-        and (of_places is around or of_places == around)
+        of_quality is part.quality
+        and (of_places is part.around or of_places == part.around)
         and of_changes == moved
     )
 

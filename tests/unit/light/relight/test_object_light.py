@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from sailenv_ros.light.relight.baked_scene import albedo_of_model
 from sailenv_ros.light.relight.movable_objects import MovableObjects
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
 from sailenv_ros.light.relight.object_lights import ObjectLights
-from sailenv_ros.light.relight.quality import FINE
+from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Model
@@ -149,6 +150,35 @@ def test_many_things_on_their_way_cost_little(monkeypatch: pytest.MonkeyPatch) -
     assert not np.array_equal(shown[2].bounced, rest[2].bounced)
     again = lights.update(snapshot, scene, (), threads=1)
     assert np.array_equal(again[2].bounced, rest[2].bounced)
+
+
+def test_what_moves_near_an_object_that_rests_costs_little(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few rays tell the difference that it makes, as if all were found anew with many."""
+    asked: list[Quality] = []
+    of_one = ObjectLighting.light_on
+
+    def light_on(self: ObjectLighting, *arguments: Any) -> ObjectLight:
+        asked.append(arguments[-1])
+        return of_one(self, *arguments)
+
+    monkeypatch.setattr(ObjectLighting, "light_on", light_on)
+    gap = 0.25
+    snapshot = room((BOX, IN_THE_AIR), (BOX, Pose((gap, 0.0, 1.0))), environment=WHITE_SKY)
+    scene, lights = scene_of(snapshot), ObjectLights()
+    velocities = np.zeros((3, 2, 3))
+    velocities[2, 0, 0] = 0.5
+    passing = replace(snapshot, velocities=velocities)
+    lights.update(passing, scene, (), threads=1)
+    asked.clear()
+    for away in (0.0, 0.02, 0.04):
+        shown = lights.update(moved(passing, 2, gap + away), scene, (), threads=1)
+    # The one that moves, and the difference that it makes to the other one.
+    assert asked == 4 * [QUICK]
+    rest = ObjectLights().update(moved(snapshot, 2, gap + 0.04), scene, (), threads=1)
+    for normal in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, 0, 1)):
+        at = tuple(0.1 * np.array(normal) + (0.0, 0.0, 1.0))
+        near, wanted = (value(one[2], one[2].bounced[0, :, 1], normal, at) for one in (shown, rest))
+        assert near == pytest.approx(wanted, rel=0.08)
 
 
 def test_creeping_by_less_than_can_be_seen_changes_nothing() -> None:
