@@ -7,7 +7,13 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TURN", "fibonacci_sphere", "in_turns", "low_discrepancy_points"]
+__all__ = [
+    "TURN",
+    "fibonacci_sphere",
+    "in_turns",
+    "low_discrepancy_points",
+    "sequence_points",
+]
 
 Floats = NDArray[np.float32]
 
@@ -49,6 +55,30 @@ def in_turns(pattern: Floats) -> Floats:
     number = np.arange(len(pattern)) % (len(pattern) // TURN)
     number = (number + cell[by_cell]) % (len(pattern) // TURN)
     return pattern[by_cell[np.lexsort((cell[by_cell], number))]]
+
+
+@lru_cache(maxsize=32)
+def sequence_points(count: int) -> Floats:
+    """Return (count, 2) float32: points of the unit square, of which the first ones are even, too.
+
+    Each power of two of them from the first on have one in each strip of that share of the square,
+    along either side. The array is shared, and cannot be written to.
+
+    The first two dimensions of the sequence of Sobol (1967), after Kollig and Keller (2002),
+    "Efficient multidimensional sampling", moved to the middles of the intervals of all.
+    """
+    index = np.arange(count, dtype=np.uint64)
+    points = np.zeros((count, 2), np.uint64)
+    first = second = np.uint64(1 << 31)
+    for bit in range(32):
+        wanted = (index >> np.uint64(bit)) & np.uint64(1)
+        points[:, 0] ^= wanted * first
+        points[:, 1] ^= wanted * second
+        first, second = first >> np.uint64(1), second ^ (second >> np.uint64(1))
+    middle = 0.5 / 2.0 ** max(int(count - 1).bit_length(), 0)
+    made = (points / 2.0**32 + middle).astype(np.float32)
+    made.flags.writeable = False
+    return made
 
 
 def fibonacci_sphere(count: int) -> Floats:

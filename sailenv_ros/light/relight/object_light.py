@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.light_shapes import light_record
-from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
+from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points, sequence_points
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.light.relight.quality import Quality
@@ -197,14 +197,14 @@ class ObjectLighting:
         found, bounced, of_areas, nearness = gather_change(
             world.record, positions, normals, np.full(count, WHOLE, np.uint8),
             low_discrepancy_points(quality.object_rays), self._areas,
-            low_discrepancy_points(quality.area_rays), 0.0, inside_share=INSIDE_SHARE, threads=1,
+            sequence_points(quality.area_rays), 0.0, inside_share=INSIDE_SHARE, threads=1,
         )  # fmt: skip
         direct = np.zeros((count, self._layers))
         direct[:, self._area] = of_areas
         for number, lamp in self._lamps.items():
             state, value, _ = direct_light_delta(
                 world.record, lamp, positions, normals, np.zeros(count, np.int32),
-                self._everything, low_discrepancy_points(quality.light_rays), threads=1,
+                self._everything, sequence_points(quality.light_rays), threads=1,
             )  # fmt: skip
             direct[:, number] = np.where(state > 0, value, 0.0)
         weights = np.clip(nearness.astype(np.float64) / HIDDEN_M, LEAST_WEIGHT, 1.0)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.light_shapes import light_record
-from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
+from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points, sequence_points
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.moved_surfaces import MovedSurfaces
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject
@@ -314,7 +314,7 @@ class ObjectShadows:
         state, bounced, areas, nearness = gather_change(
             world.record, here, facing, np.full(count, CHANGED, np.uint8),
             low_discrepancy_points(rays), _joined(self._records[n] for n in self._areas),
-            low_discrepancy_points(FINE.area_rays), LEAST, inside_share=INSIDE_SHARE,
+            sequence_points(FINE.area_rays), LEAST, inside_share=INSIDE_SHARE,
             most_changed=1.0, numbers=numbers, threads=threads,
         )  # fmt: skip
         columns = [bounced, areas]
@@ -322,7 +322,7 @@ class ObjectShadows:
         for number in self._lamps:
             touched, change, _ = direct_light_delta(
                 world.record, self._records[number], here, facing, np.zeros(count, np.int32),
-                nothing, low_discrepancy_points(FINE.light_rays), numbers=numbers, threads=threads,
+                nothing, sequence_points(FINE.light_rays), numbers=numbers, threads=threads,
             )  # fmt: skip
             columns.append(np.where(touched > 0, change, np.float32(0.0))[:, None])
             state = np.where((state == 0) & (touched > 0), np.uint8(CHANGED), state)

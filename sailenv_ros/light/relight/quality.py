@@ -17,7 +17,8 @@ class Quality:
         From each patch: to find what was hidden, and to find its light; the first pass is left out
         if there are none.
     area_rays, light_rays : int
-        From each patch to each area light, from each texel to each other light.
+        From each patch to each area light, from each texel to each other light; only 16 of them
+        where these are all stopped, or none.
     probe_rays : int
         From each probe.
     object_points, object_rays : int
@@ -42,7 +43,7 @@ class Quality:
 
     first_rays: int = 16
     rays: int = 64
-    area_rays: int = 16
+    area_rays: int = 64
     light_rays: int = 16
     probe_rays: int = 128
     object_points: int = 128

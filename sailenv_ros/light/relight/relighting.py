@@ -15,7 +15,11 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.light_probes import probe_positions
 from sailenv_ros.light.bake.light_shapes import light_record
-from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere, low_discrepancy_points
+from sailenv_ros.light.bake.ray_patterns import (
+    fibonacci_sphere,
+    low_discrepancy_points,
+    sequence_points,
+)
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
 from sailenv_ros.light.relight.layer_updates import DirectDelta, LayerUpdates
@@ -209,7 +213,7 @@ class _Relighting:
         lights = np.concatenate(
             [np.zeros(0, RAY_LIGHT), *(light_record(light) for light in self._area_lights)]
         )
-        shots = low_discrepancy_points(self._quality.area_rays)
+        shots = sequence_points(self._quality.area_rays)
         found, change, area, nearness = gather_change(
             self._rays, self._patch_positions, self._patch_normals, wanted.astype(np.uint8),
             low_discrepancy_points(rays), lights, shots, self._quality.least,
@@ -254,7 +258,7 @@ class _Relighting:
                 continue
             state, value, share = direct_light_delta(
                 self._rays, light_record(light), *places,
-                found, low_discrepancy_points(self._quality.light_rays), threads=self._threads,
+                found, sequence_points(self._quality.light_rays), threads=self._threads,
             )  # fmt: skip
             if by_texels:
                 old = self._layers[number].direct.reshape(-1)[self._scene.places].astype(np.float32)

@@ -159,7 +159,11 @@ struct DirectLightDelta {
     bool touched;
 };
 
-// `whole`: all of the light is wanted, whatever changed.
+// After so many rays no more are cast where all were stopped, or none.
+constexpr int64_t FIRST_RAYS = 16;
+
+// `whole`: all of the light is wanted, whatever changed. Of the pattern's points the first ones are
+// spread evenly, too.
 static inline DirectLightDelta direct_light_delta(const RayScene& s, const SeenChanges& between,
                                                   const RayLight& l, const float* p, const float* n,
                                                   const float* pattern, int64_t rays,
@@ -167,31 +171,37 @@ static inline DirectLightDelta direct_light_delta(const RayScene& s, const SeenC
     DirectLightDelta result = {0.0f, 0.0f, 0.0f, 0.0f, false};
     const float turn_u = scatter(2 * number), turn_v = scatter(2 * number + 1);
     const float o[3] = {p[0] + n[0] * LIFT_M, p[1] + n[1] * LIFT_M, p[2] + n[2] * LIFT_M};
-    const float each = 1.0f / static_cast<float>(rays);
     float unhindered = 0.0f;
-    for (int64_t m = 0; m < rays; m++) {
+    int64_t cast = 0, stopped_rays = 0, m = 0;
+    for (; m < rays; m++) {
+        if (m == FIRST_RAYS && (stopped_rays == 0 || stopped_rays == cast)) break;
         float u = pattern[2 * m] + turn_u, v = pattern[2 * m + 1] + turn_v;
         u -= std::floor(u);
         v -= std::floor(v);
         const LightSample light = sample_light(l, p, u, v);
-        const float power = sample_power(light, n) * each;
+        const float power = sample_power(light, n);
         if (!(power > 0.0f)) continue;
+        cast++;
         unhindered += power;
         const Ray r = ray_of(o, light.towards);
         const Stopped way = stopped(s, between, r, light.length, whole);
         result.touched |= way.touched;
+        stopped_rays += whole ? way.after : way.touched;
         const float freed = static_cast<float>(way.before) - static_cast<float>(way.after);
         if (freed == 0.0f && (!whole || way.after)) continue;
         const float clear = l.lamp.kind == LIGHT_DIRECTIONAL ? glass_transmittance(s, r) : 1.0f;
         result.change += freed * power * clear;
-        result.share_change += freed * each * clear;
+        result.share_change += freed * clear;
         if (!way.after) {
             result.total += power * clear;
-            result.share_all += each * clear;
+            result.share_all += clear;
         }
     }
+    const float each = 1.0f / static_cast<float>(m);
+    result.share_change *= each;
+    result.share_all *= each;
     if (result.change != 0.0f || result.total != 0.0f) {
-        const float scale = sample_scale(l, p, n, unhindered);
+        const float scale = each * sample_scale(l, p, n, each * unhindered);
         result.change *= scale;
         result.total *= scale;
     }

@@ -11,14 +11,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_ros.light.bake.light_shapes import light_record
+from sailenv_ros.light.bake.ray_patterns import sequence_points
 from sailenv_ros.light.relight import object_shadows
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
 from sailenv_ros.light.relight.found_light import MOST, FoundLight
-from sailenv_ros.light.relight.object_light import SurfacePoints
+from sailenv_ros.light.relight.object_light import ObjectLighting, SurfacePoints
 from sailenv_ros.light.relight.object_lights import ObjectLights
-from sailenv_ros.light.relight.object_shadows import LEAST, ObjectShadows
-from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.light.relight.object_shadows import CHANGED, LEAST, WHOLE, ObjectShadows
+from sailenv_ros.light.relight.quality import FINE
+from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance
 from sailenv_ros.light.relight.shadow_maps import PointChanges
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.light.relight.texel_changes import TexelChanges
@@ -105,6 +108,44 @@ def test_a_lamps_shadow_is_where_it_falls() -> None:
     assert after(0.05, 0.25) < 0.01 * before(0.05, 0.25)
     assert after(0.75, 0.05) == before(0.75, 0.05)
     assert after(0.05, 0.55) == before(0.05, 0.55)
+
+
+def test_the_edge_of_a_panels_shadow_has_many_rays() -> None:
+    """Half-way between panel and floor, a straight edge hides the panel bit by bit."""
+    panel = Light(
+        name="panel", type="area", position_m=(0.0, 0.0, 2.0), direction=(0.0, 0.0, -1.0),
+        width_m=0.6, height_m=0.6,
+    )  # fmt: skip
+    board = model_of(box_mesh((2.0, 4.0, 0.002)), base_colour=BLACK)
+    snapshot = room((board, Pose((-1.0, 0.0, 1.0))), lights=(panel,))
+    lighting = ObjectLighting(scene_of(snapshot), (), SurfacePoints())
+    placed = lighting.placed(movable_objects(snapshot)[0])
+    x = np.linspace(-0.5, 0.5, 201, dtype=np.float32)
+    points = np.stack([x, np.full_like(x, 0.05), np.zeros_like(x)], axis=1)
+    up = np.tile(np.array([0, 0, 1], np.float32), (len(x), 1))
+
+    def direct(more: list[PlacedInstance], wanted: int, rays: int) -> NDArray[np.float32]:
+        world = lighting.world.with_more(more)  # whose arrays the record points to
+        found = gather_change(
+            world.record, points, up,
+            np.full(len(x), wanted, np.uint8), sequence_points(16), light_record(panel),
+            sequence_points(rays), 0.0, inside_share=0.5, most_changed=1.0, threads=1,
+        )  # fmt: skip
+        return found[2][:, 0]
+
+    after = replace(placed, before=False)
+    # The edge is seen against the panel at - x, and the panel ends at 0.3 m.
+    expected = np.clip((0.3 + x) / 0.6, 0.0, 1.0)
+    edge = np.abs(x) < 0.25
+    for rays, most in ((FINE.area_rays, 0.02), (16, 0.06)):
+        open_sky = direct([], WHOLE, rays)
+        taken = -direct([after], CHANGED, rays) / open_sky
+        left = direct([after], WHOLE, rays) / open_sky
+        for share in (1.0 - taken, left):
+            off = share - expected
+            assert np.sqrt(np.mean(off[edge] ** 2)) < most
+            # Elsewhere few rays say the same as many.
+            assert np.abs(off[np.abs(x) > 0.35]).max() < 1e-5
 
 
 def test_the_sun_is_left_to_its_shadow_map() -> None:
