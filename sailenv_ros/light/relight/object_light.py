@@ -19,15 +19,15 @@ from numpy.typing import NDArray
 from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points, sequence_points
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
-from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
-from sailenv_ros.light.relight.quality import Quality
+from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.quality import QUICK, Quality
 from sailenv_ros.light.relight.ray_world import RayWorld, ray_world
 from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance, placed_instances
+from sailenv_ros.light.relight.sent_light import sent_by_light, sent_by_probes
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
     direct_light_delta,
     gather_change,
-    light_of_probes,
 )
 from sailenv_ros.rays.model_triangles import triangles_of
 from sailenv_ros.rays.static_geometry import PlacedModel
@@ -128,7 +128,7 @@ class ObjectLighting:
         probes = [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in layers]
         self._probes = np.ascontiguousarray(np.concatenate(probes, axis=-1))
         self._everything = np.full(len(scene.sent), WHOLE, np.uint8)
-        self._placed: dict[int, tuple[Place, PlacedInstance]] = {}
+        self._placed: dict[int, tuple[tuple[Place, bool], PlacedInstance]] = {}
         self.world = ray_world(
             scene, changes, scene.sent, scene.sent, self._radiance_of_change, settled=True
         )
@@ -161,33 +161,29 @@ class ObjectLighting:
 
     def placed(self, thing: PlacedObject) -> PlacedInstance:
         """Return an object as rays meet it; the same one until it has moved."""
-        place, known = thing.place, self._placed.get(thing.id)
+        place, known = (thing.place, thing.moves), self._placed.get(thing.id)
         if known is not None and known[0] == place:
             return known[1]
         pose = thing.world_from_body
         shape = self._scene.shape_of(thing.model, thing.scale, None)
-        radiance = self._radiance(thing.model, thing.scale, pose)
-        made = PlacedInstance(shape, pose, None, radiance, True, True)
+        if thing.moves:
+            sent = self._sent_by_probes(thing.model, thing.scale, pose)
+        else:
+            points = _placed_points(thing, *self._points.of(thing.model, QUICK.object_points))
+            sent = sent_by_light(self.light_on(thing, (), QUICK), *points, thing.model)
+        made = PlacedInstance(shape, pose, None, sent, True, True)
         self._placed[thing.id] = place, made
         return made
 
     def _radiance_of_change(self, change: Change) -> Floats | None:
         if change.came is None or change.after is None:
             return None
-        return self._radiance(*change.came, change.after)
+        return self._sent_by_probes(*change.came, change.after)
 
-    def _radiance(
+    def _sent_by_probes(
         self, model: Model, scale: tuple[float, float, float], pose: NDArray[np.float64]
     ) -> Floats:
-        """Return (C,) float32: what an object sends out on average, by probes and its colour."""
-        grid = self._scene.baked.probes
-        middle = pose[:3, :3] @ (np.asarray(model.middle) * scale) + pose[:3, 3]
-        light = light_of_probes(
-            self._probes, grid.origin_m, grid.spacing_m,
-            middle[None].astype(np.float32), np.zeros((1, 3), np.float32), threads=1,
-        )  # fmt: skip
-        sent = np.maximum(light[0], 0.0).reshape(-1, 3) * albedo_of_model(model)
-        return np.ascontiguousarray(sent.reshape(-1), np.float32)
+        return sent_by_probes(self._probes, self._scene.baked.probes, model, scale, pose)
 
     def _gathered(
         self, world: RayWorld, positions: Floats, normals: Floats, quality: Quality

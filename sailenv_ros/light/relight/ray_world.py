@@ -67,7 +67,7 @@ def ray_world(
     before, after : (P, C) float32
         Radiance of the patches; read whenever rays are followed.
     radiance_of : callable
-        Gives (C,) float32, what something sends out that came.
+        Gives (6, C) float32, what the sides of something send out that came.
     settled : bool
         True has things stand before as they do after.
     """

@@ -21,12 +21,13 @@ from sailenv_ros.light.bake.ray_patterns import (
     sequence_points,
 )
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
-from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
+from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.layer_updates import DirectDelta, LayerUpdates
 from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
 from sailenv_ros.light.relight.quality import Quality
 from sailenv_ros.light.relight.ray_world import ray_world
 from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.light.relight.sent_light import sent_by_probes
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
     direct_light_delta,
@@ -177,17 +178,14 @@ class _Relighting:
     # -- what is there -----------------------------------------------------------------------
 
     def _radiance_of_new(self, change: Change) -> Floats | None:
-        """Return (C,) float32: what an object sends out that has no texels, by its colour."""
+        """Return (6, C) float32: what an object sends out that has no texels, by its colour."""
         if change.came is None or change.after is None:
             return None
-        point = change.after[None, :3, 3].astype(np.float32)
-        up = np.array([[0.0, 0.0, 1.0]], np.float32)
         probes = np.concatenate(
             [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in self._layers],
             axis=-1,
         )
-        light = np.maximum(self._of_probes(probes, point, up)[0], 0.0).reshape(-1, 3)
-        return np.ascontiguousarray((light * albedo_of_model(change.came[0])).reshape(-1))
+        return sent_by_probes(probes, self._scene.baked.probes, *change.came, change.after)
 
     def _charts(self) -> dict[int, LightChart]:
         charts = dict(self._scene.baked.charts)

@@ -43,7 +43,13 @@ class Change:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PlacedInstance:
-    """A shape where it stands: before the changes, after them, or both."""
+    """A shape where it stands: before the changes, after them, or both.
+
+    Attributes
+    ----------
+    radiance : (6, C) float32 or None
+        What its sides send out, see sent_light.py; None where it has a chart.
+    """
 
     shape: SolidModel
     pose: NDArray[np.float64]

@@ -32,7 +32,7 @@ struct RayShape {
 
 struct RayInstance {
     const RayShape* shape;
-    const float* radiance;  // (channels,): of what has no chart
+    const float* radiance;  // (6, channels): of sides +x to -z of what has no chart
     float body_from_world[12];
     float sphere[4];  // around it, world: centre, radius
     float chart[4];   // offset and scale in the light map

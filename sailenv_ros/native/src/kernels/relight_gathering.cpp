@@ -18,6 +18,30 @@ constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 constexpr double COVERED = 0.95;
 constexpr float COVERED_M = 0.015f;
 
+// How much each of six sides of a body counts, where a ray meets a triangle: by the squares of the
+// normal's parts along the body's axes (see `irradiance_of_terms`).
+struct SideShares {
+    float share[3];
+    int32_t side[3];
+};
+SideShares side_shares(const Hit& hit, const Ray& world) {
+    const Ray r = in_body(*hit.instance, world);
+    const float* block = static_cast<const float*>(hit.instance->shape->triangles) +
+                         9 * WIDTH * int64_t{hit.triangle / WIDTH} + hit.triangle % WIDTH;
+    const vec3 a(block[3 * WIDTH], block[4 * WIDTH], block[5 * WIDTH]);
+    const vec3 b(block[6 * WIDTH], block[7 * WIDTH], block[8 * WIDTH]);
+    const vec3 normal = cross(a, b);
+    const float square = std::max(dot(normal, normal), 1e-30f);
+    const bool away = dot(normal, vec3(r.d[0], r.d[1], r.d[2])) > 0.0f;
+    SideShares shares;
+    for (int k = 0; k < 3; k++) {
+        const float part = (&normal.x)[k];
+        shares.share[k] = part * part / square;
+        shares.side[k] = (part < 0.0f) != away ? k + 3 : k;
+    }
+    return shares;
+}
+
 // Adds what a ray sees, times `weight`, to `sum`; false if that is the back of a surface.
 bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* table, float weight,
               float* sum) {
@@ -30,20 +54,24 @@ bool add_seen(const RayScene& s, const Hit& hit, const Ray& r, const float* tabl
     }
     if (!hit.front) return false;
     const RayInstance& i = *hit.instance;
-    const float* radiance = i.radiance;
-    if (i.has_chart && i.shape->places != nullptr) {
-        const float* p = i.shape->places + 6 * static_cast<int64_t>(hit.triangle);
-        const float first = 1.0f - hit.second - hit.third;
-        const float u =
-            i.chart[0] + i.chart[2] * (first * p[0] + hit.second * p[2] + hit.third * p[4]);
-        const float v =
-            i.chart[1] + i.chart[3] * (first * p[1] + hit.second * p[3] + hit.third * p[5]);
-        const int32_t x = std::min(std::max(static_cast<int32_t>(u * s.width), 0), s.width - 1);
-        const int32_t y = std::min(std::max(static_cast<int32_t>(v * s.height), 0), s.height - 1);
-        const int32_t patch = s.patches[static_cast<int64_t>(y) * s.width + x];
-        if (patch < 0 || patch >= s.patch_count) return true;
-        radiance = table + static_cast<int64_t>(patch) * s.channels;
+    if (!i.has_chart || i.shape->places == nullptr) {
+        const SideShares shares = side_shares(hit, r);
+        for (int k = 0; k < 3; k++) {
+            const float* radiance = i.radiance + shares.side[k] * s.channels;
+            const float share = weight * shares.share[k];
+            for (int c = 0; c < s.channels; c++) sum[c] += share * radiance[c];
+        }
+        return true;
     }
+    const float* p = i.shape->places + 6 * static_cast<int64_t>(hit.triangle);
+    const float first = 1.0f - hit.second - hit.third;
+    const float u = i.chart[0] + i.chart[2] * (first * p[0] + hit.second * p[2] + hit.third * p[4]);
+    const float v = i.chart[1] + i.chart[3] * (first * p[1] + hit.second * p[3] + hit.third * p[5]);
+    const int32_t x = std::min(std::max(static_cast<int32_t>(u * s.width), 0), s.width - 1);
+    const int32_t y = std::min(std::max(static_cast<int32_t>(v * s.height), 0), s.height - 1);
+    const int32_t patch = s.patches[static_cast<int64_t>(y) * s.width + x];
+    if (patch < 0 || patch >= s.patch_count) return true;
+    const float* radiance = table + static_cast<int64_t>(patch) * s.channels;
     for (int c = 0; c < s.channels; c++) sum[c] += weight * radiance[c];
     return true;
 }

@@ -148,6 +148,16 @@ def test_the_edge_of_a_panels_shadow_has_many_rays() -> None:
             assert np.abs(off[np.abs(x) > 0.35]).max() < 1e-5
 
 
+def test_only_the_lit_side_of_a_thing_gives_light_back() -> None:
+    """A lamp shines on an upright red board: the floor before it is lit, the one behind is not."""
+    board = model_of(box_mesh((0.01, 1.6, 0.8)), base_colour=(0.8, 0.0, 0.0, 1.0))
+    snapshot = room((board, Pose((0.4, 0.0, 0.4))), lights=(replace(LAMP, position_m=(-1, 0, 2)),))
+    read = reader(snapshot, shadowed(snapshot).layers[1].bounced)
+    # By the form factor of half of what is before it, at most.
+    assert 0.004 < read(0.25, 0.05) < 0.5 * 0.8 / np.pi
+    assert read(0.55, 0.05) < 0.1 * read(0.25, 0.05)
+
+
 def test_the_sun_is_left_to_its_shadow_map() -> None:
     """It draws what can move in each picture: its shadow would else be there twice."""
     snapshot = room((BOX, ON_THE_FLOOR), environment=WHITE_SKY, lights=(SUN,))
