@@ -1,4 +1,4 @@
-"""What the sides of an object that can move send out. From the light on it to radiance.
+"""Radiance of the sides of an object that can move, from the light on it.
 
 One number for all of it would be wrong where it matters most: the back of a curtain, which is dark,
 lights the wall behind it. So each of six sides of the body has its own, as in the ambient cube of

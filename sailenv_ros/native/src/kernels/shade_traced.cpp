@@ -250,8 +250,7 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
         put(pixels.row.normal, i, vector_at(c.normal, i));
         pixels.row.id[i] = c.id[i];
         if (!(pixels.share[i] > 0.0f)) continue;
-        const float angle = pixels.angle[i] =
-            of_row ? ray_spread(c, pixels.rays, i) : USUAL_ANGLE;
+        const float angle = pixels.angle[i] = of_row ? ray_spread(c, pixels.rays, i) : USUAL_ANGLE;
         pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
         pixels.step[i] = step_of(c.roughness[i], angle, pixels.mirrored[i] >= LARGE_SHARE);
         some |= pixels.share[i] > 0.0f;
