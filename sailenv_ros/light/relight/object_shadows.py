@@ -250,10 +250,15 @@ class ObjectShadows:
         found.put(np.flatnonzero(fresh), gathered)
         patches.put(asked, found)
         self._state[asked] = found.state
-        uneven = asked[self._is_uneven(asked, found)]
+        close, edges = self._uneven(asked, found)
         # They say nothing of others.
-        patches.state[uneven] = INSIDE
-        near = np.intersect1d(uneven, asked[found.nearness < TOUCHING * self._size[asked]])
+        patches.state[asked[close | edges]] = INSIDE
+        touching = (close | edges) & (found.nearness < TOUCHING * self._size[asked])
+        chosen = (
+            (touching, FINE.texel_rays),
+            (close & ~touching, FINE.rays),
+            (edges & ~(close | touching), FINE.edge_rays),
+        )
         texels = self._texels.texels
         moves = np.ones(len(texels), bool)
         if not anew:
@@ -261,8 +266,7 @@ class ObjectShadows:
             moves = self._reached(moved, *at, np.zeros(len(texels), np.float32))
         known = self._texels.after(moves)
         fresh_texels = [
-            self._found_at(known, world, self._texels_of(own), rays)
-            for own, rays in ((near, FINE.texel_rays), (np.setdiff1d(uneven, near), FINE.rays))
+            self._found_at(known, world, self._texels_of(asked[own]), rays) for own, rays in chosen
         ]
         self._texels = known.replaced(~again[surfaces.scene.patches.of_texel[texels]], fresh_texels)
 
@@ -279,18 +283,23 @@ class ObjectShadows:
         found.put(np.flatnonzero(~there), fresh)
         return TexelChanges.fresh(texels, rays, found)
 
-    def _is_uneven(self, asked: NDArray[np.intp], found: PointChanges) -> NDArray[np.bool_]:
-        """Return where light changes within a patch."""
+    def _uneven(
+        self, asked: NDArray[np.intp], found: PointChanges
+    ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Return which patches are not enough: by what is close, and where shadows end."""
         scene, change = self._surfaces.scene, self._patches.change
         areas, lamps = np.split(
             change[:, change.shape[1] - len(self._records) :], [len(self._areas)], 1
         )
-        shadowed = _share(lamps, scene.direct[:, self._lamps]) > LEAST_DIRECT
-        shadowed = with_neighbours(scene, shadowed)
-        shadowed |= _share(areas, scene.direct[:, self._areas]) > LEAST_SOFT
-        near = (found.nearness < NEAR * self._size[asked]) | (found.state == INSIDE)
-        uneven: NDArray[np.bool_] = ((found.state > 0) & near) | shadowed[asked]
-        return uneven
+        # Between patches that an edge crosses, rays of one may miss it.
+        edges: NDArray[np.bool_] = with_neighbours(
+            scene, _share(lamps, scene.direct[:, self._lamps]) > LEAST_DIRECT
+        )[asked]
+        soft = with_neighbours(scene, _share(areas, scene.direct[:, self._areas]) > LEAST_SOFT)
+        edges |= soft[asked] & (found.state > 0)
+        close: NDArray[np.bool_] = found.nearness < NEAR * self._size[asked]
+        close |= found.state == INSIDE
+        return close & (found.state > 0), edges
 
     def _texels_of(self, patches: NDArray[np.intp]) -> NDArray[np.intp]:
         """Return the texels of patches, in their order in the scene."""

@@ -23,8 +23,8 @@ class Quality:
         From each probe.
     object_points, object_rays : int
         Points of each object that can move, and rays from each of them.
-    texel_rays : int
-        From each texel near such an object.
+    texel_rays, edge_rays : int
+        From each texel near such an object, and where a shadow of it ends.
     smoothing : int
         How many patches to each side are averaged over at most.
     least : float
@@ -49,6 +49,7 @@ class Quality:
     object_points: int = 128
     object_rays: int = 64
     texel_rays: int = 256
+    edge_rays: int = 32
     smoothing: int = 2
     least: float = 0.002
     bounces: int = 8

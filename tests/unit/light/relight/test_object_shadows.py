@@ -148,6 +148,27 @@ def test_the_edge_of_a_panels_shadow_has_many_rays() -> None:
             assert np.abs(off[np.abs(x) > 0.35]).max() < 1e-5
 
 
+def test_texels_are_asked_wherever_a_soft_shadow_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Under a panel, slats throw thin shadows, which single patches miss: no square is left out."""
+    panel = Light(
+        name="panel", type="area", position_m=(0.0, 0.0, 2.0), direction=(0.0, 0.0, -1.0),
+        width_m=0.4, height_m=0.4,
+    )  # fmt: skip
+    slat = model_of(box_mesh((0.03, 1.4, 0.002)), base_colour=BLACK)
+    places = np.linspace(-0.6, 0.6, 9)
+    snapshot = room(*((slat, Pose((x, 0.0, 0.3))) for x in places), lights=(panel,))
+    baked = snapshot.contents.baked
+    assert baked is not None
+    _, before = texels(snapshot, baked.layers[1].direct)
+    shares = []
+    for least in (object_shadows.LEAST_SOFT, -1.0):
+        monkeypatch.setattr(object_shadows, "LEAST_SOFT", least)
+        _, after = texels(snapshot, shadowed(snapshot).layers[1].direct)
+        shares.append(after / before)
+    assert shares[1].min() < 0.8
+    assert np.abs(shares[0] - shares[1]).max() < 0.02
+
+
 def test_only_the_lit_side_of_a_thing_gives_light_back() -> None:
     """A lamp shines on an upright red board: the floor before it is lit, the one behind is not."""
     board = model_of(box_mesh((0.01, 1.6, 0.8)), base_colour=(0.8, 0.0, 0.0, 1.0))
