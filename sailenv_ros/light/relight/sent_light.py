@@ -1,8 +1,8 @@
 """Radiance of the sides of an object that can move, from the light on it.
 
-One number for all of it would be wrong where it matters most: the back of a curtain, which is dark,
-lights the wall behind it. So each of six sides of the body has its own, as in the ambient cube of
-McTaggart 2004, "Half-Life 2 / Valve Source shading".
+What a wall sees of a curtain is its back, which is dark: one number for all of the object would be
+wrong. So each of six sides of the body has its own, as in the ambient cube of McTaggart 2004,
+"Half-Life 2 / Valve Source shading".
 """
 
 from __future__ import annotations
