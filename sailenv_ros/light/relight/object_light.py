@@ -25,10 +25,7 @@ from sailenv_ros.light.relight.ray_world import RayWorld, ray_world
 from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance, placed_instances
 from sailenv_ros.light.relight.sent_light import sent_by_light, sent_by_probes
 from sailenv_ros.native.ray_types import RAY_LIGHT
-from sailenv_ros.native.relight_kernels import (
-    direct_light_delta,
-    gather_change,
-)
+from sailenv_ros.native.relight_kernels import direct_light_delta, gather_change
 from sailenv_ros.rays.model_triangles import triangles_of
 from sailenv_ros.rays.static_geometry import PlacedModel
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight

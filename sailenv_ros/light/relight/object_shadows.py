@@ -22,19 +22,10 @@ from sailenv_ros.light.relight.moved_surfaces import MovedSurfaces
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject
 from sailenv_ros.light.relight.quality import FINE
 from sailenv_ros.light.relight.ray_world import RayWorld
-from sailenv_ros.light.relight.shadow_maps import (
-    INSIDE,
-    PointChanges,
-    ShadowMaps,
-    with_neighbours,
-)
+from sailenv_ros.light.relight.shadow_maps import INSIDE, PointChanges, ShadowMaps, with_neighbours
 from sailenv_ros.light.relight.texel_changes import TexelChanges
 from sailenv_ros.native.ray_types import RAY_LIGHT
-from sailenv_ros.native.relight_kernels import (
-    direct_light_delta,
-    gather_change,
-    reached_points,
-)
+from sailenv_ros.native.relight_kernels import direct_light_delta, gather_change, reached_points
 from sailenv_ros.types.baked_light import BakedLight
 
 __all__ = ["ObjectShadows"]
