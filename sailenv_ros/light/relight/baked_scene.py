@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,6 +140,13 @@ class BakedScene:
         if found is None:
             found = self._shapes[key] = (model, flat), solid_model(model, scale, flat)
         return found[1]
+
+    @cached_property
+    def light_in_air(self) -> Floats:
+        """(Z, Y, X, 4, C) float32: all light of the probes, the three colours of each layer."""
+        layers = self.baked.layers
+        probes = [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in layers]
+        return np.ascontiguousarray(np.concatenate(probes, axis=-1))
 
     def looks_with(self, painted: Mapping[int, Model]) -> tuple[Floats, Floats]:
         """Return albedo and emission, (P, 3) float32 each, of the patches.

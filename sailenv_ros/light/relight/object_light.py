@@ -122,13 +122,9 @@ class ObjectLighting:
             for n, light in lights.items()
             if light.type not in ("area", "directional")
         }
-        probes = [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in layers]
-        self._probes = np.ascontiguousarray(np.concatenate(probes, axis=-1))
         self._everything = np.full(len(scene.sent), WHOLE, np.uint8)
         self._placed: dict[int, tuple[tuple[Place, bool], PlacedInstance]] = {}
-        self.world = ray_world(
-            scene, changes, scene.sent, scene.sent, self._radiance_of_change, settled=True
-        )
+        self.world = ray_world(scene, changes, scene.sent, scene.sent, settled=True)
 
     def light_on(
         self, thing: PlacedObject, near: Sequence[PlacedObject], quality: Quality
@@ -164,23 +160,14 @@ class ObjectLighting:
         pose = thing.world_from_body
         shape = self._scene.shape_of(thing.model, thing.scale, None)
         if thing.moves:
-            sent = self._sent_by_probes(thing.model, thing.scale, pose)
+            probes, grid = self._scene.light_in_air, self._scene.baked.probes
+            sent = sent_by_probes(probes, grid, thing.model, thing.scale, pose)
         else:
             points = _placed_points(thing, *self._points.of(thing.model, QUICK.object_points))
             sent = sent_by_light(self.light_on(thing, (), QUICK), *points, thing.model)
         made = PlacedInstance(shape, pose, None, sent, True, True)
         self._placed[thing.id] = place, made
         return made
-
-    def _radiance_of_change(self, change: Change) -> Floats | None:
-        if change.came is None or change.after is None:
-            return None
-        return self._sent_by_probes(*change.came, change.after)
-
-    def _sent_by_probes(
-        self, model: Model, scale: tuple[float, float, float], pose: NDArray[np.float64]
-    ) -> Floats:
-        return sent_by_probes(self._probes, self._scene.baked.probes, model, scale, pose)
 
     def _gathered(
         self, world: RayWorld, positions: Floats, normals: Floats, quality: Quality

@@ -5,7 +5,7 @@ From `BakedScene` and changes to structures of `native.ray_types`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +18,7 @@ from sailenv_ros.light.relight.scene_changes import (
     placed_instances,
     ray_instances,
 )
+from sailenv_ros.light.relight.sent_light import sent_by_probes
 from sailenv_ros.native.ray_kernels import build_tree
 from sailenv_ros.native.ray_types import RAY_SCENE
 from sailenv_ros.native.render_types import address, record
@@ -56,7 +57,6 @@ def ray_world(
     changes: Sequence[Change],
     before: Floats,
     after: Floats,
-    radiance_of: Callable[[Change], Floats | None],
     *,
     settled: bool = False,
 ) -> RayWorld:
@@ -66,8 +66,6 @@ def ray_world(
     ----------
     before, after : (P, C) float32
         Radiance of the patches; read whenever rays are followed.
-    radiance_of : callable
-        Gives (6, C) float32, what the sides of something send out that came.
     settled : bool
         True has things stand before as they do after.
     """
@@ -81,7 +79,7 @@ def ray_world(
     changed = [
         thing
         for change in changes
-        for thing in placed_instances(scene, change, radiance_of(change))
+        for thing in placed_instances(scene, change, _sent_out(scene, change))
     ]
     if settled:
         resting += [replace(thing, before=True) for thing in changed if thing.after]
@@ -113,3 +111,10 @@ def ray_world(
     )
     kept = (scene, resting, rows, nodes, order, changed_rows, before, after)
     return RayWorld(made, changed, kept)
+
+
+def _sent_out(scene: BakedScene, change: Change) -> Floats | None:
+    """Return (6, C) float32: what something sends out that came, and has no texels."""
+    if change.came is None or change.after is None:
+        return None
+    return sent_by_probes(scene.light_in_air, scene.baked.probes, *change.came, change.after)

@@ -27,7 +27,6 @@ from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
 from sailenv_ros.light.relight.quality import Quality
 from sailenv_ros.light.relight.ray_world import ray_world
 from sailenv_ros.light.relight.scene_changes import Change
-from sailenv_ros.light.relight.sent_light import sent_by_probes
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import (
     direct_light_delta,
@@ -103,7 +102,7 @@ class _Relighting:
             self._after = scene.radiance(
                 scene.irradiance, scene.direct, self._albedo, self._emission
             )
-        self._world = ray_world(scene, changes, self._before, self._after, self._radiance_of_new)
+        self._world = ray_world(scene, changes, self._before, self._after)
         self._rays = self._world.record
 
     def run(self) -> BakedLight:
@@ -176,16 +175,6 @@ class _Relighting:
         return np.clip(share, 0.25, 4.0).astype(np.float32)[:, None]
 
     # -- what is there -----------------------------------------------------------------------
-
-    def _radiance_of_new(self, change: Change) -> Floats | None:
-        """Return (6, C) float32: what an object sends out that has no texels, by its colour."""
-        if change.came is None or change.after is None:
-            return None
-        probes = np.concatenate(
-            [layer.probe_bounced.astype(np.float32) + layer.probe_direct for layer in self._layers],
-            axis=-1,
-        )
-        return sent_by_probes(probes, self._scene.baked.probes, *change.came, change.after)
 
     def _charts(self) -> dict[int, LightChart]:
         charts = dict(self._scene.baked.charts)

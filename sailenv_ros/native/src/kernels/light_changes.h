@@ -159,8 +159,8 @@ struct DirectLightDelta {
     bool touched;
 };
 
-// After so many rays no more are cast where all were stopped, or none.
-constexpr int64_t FIRST_RAYS = 16;
+// No more rays than these are cast where all of them were stopped, or none.
+constexpr int64_t LEAST_RAYS = 16;
 
 // `whole`: all of the light is wanted, whatever changed. Of the pattern's points the first ones are
 // spread evenly, too.
@@ -174,7 +174,7 @@ static inline DirectLightDelta direct_light_delta(const RayScene& s, const SeenC
     float unhindered = 0.0f;
     int64_t cast = 0, stopped_rays = 0, m = 0;
     for (; m < rays; m++) {
-        if (m == FIRST_RAYS && (stopped_rays == 0 || stopped_rays == cast)) break;
+        if (m == LEAST_RAYS && (stopped_rays == 0 || stopped_rays == cast)) break;
         float u = pattern[2 * m] + turn_u, v = pattern[2 * m + 1] + turn_v;
         u -= std::floor(u);
         v -= std::floor(v);

@@ -244,6 +244,15 @@ static inline bool ray_passes_ball(const RayInstance& i, const Ray& r, float len
     return fx * fx + fy * fy + fz * fz <= reach * reach;
 }
 
+// The normal of a triangle that light met, in the shape's frame; as long as twice its area.
+static inline vec3 triangle_normal(const RayShape& shape, int32_t triangle) {
+    const float* block = static_cast<const float*>(shape.triangles) +
+                         9 * WIDTH * int64_t{triangle / WIDTH} + triangle % WIDTH;
+    const vec3 a(block[3 * WIDTH], block[4 * WIDTH], block[5 * WIDTH]);
+    const vec3 b(block[6 * WIDTH], block[7 * WIDTH], block[8 * WIDTH]);
+    return cross(a, b);
+}
+
 // Share of light that clear double glazing lets through, for the cosine between ray and normal:
 // Fresnel's equations for an index of 1.5, both polarisations alike, with all that goes to and
 // fro between the two faces of each of the two sheets; 0.85 head-on.
@@ -265,20 +274,11 @@ static inline float glass_transmittance(const RayShape& glass, const float* pass
     hit.t = length;
     meet_shape(glass, r, false, hit);
     if (hit.triangle < 0) return 1.0f;
-    const float* t = static_cast<const float*>(glass.triangles) +
-                     9 * WIDTH * int64_t{hit.triangle / WIDTH} + hit.triangle % WIDTH;
-    float a[3], b[3];
-    for (int k = 0; k < 3; k++) {
-        a[k] = t[WIDTH * (3 + k)];
-        b[k] = t[WIDTH * (6 + k)];
-    }
-    const float nx = a[1] * b[2] - a[2] * b[1], ny = a[2] * b[0] - a[0] * b[2],
-                nz = a[0] * b[1] - a[1] * b[0];
-    const float along = nx * r.d[0] + ny * r.d[1] + nz * r.d[2];
-    const float size = std::sqrt(nx * nx + ny * ny + nz * nz) *
-                       std::sqrt(r.d[0] * r.d[0] + r.d[1] * r.d[1] + r.d[2] * r.d[2]);
+    const vec3 normal = triangle_normal(glass, hit.triangle), along(r.d[0], r.d[1], r.d[2]);
+    const float cosine = dot(normal, along);
+    const float size = std::sqrt(dot(normal, normal)) * std::sqrt(dot(along, along));
     return passes[hit.triangle] *
-           glazing_transmittance(std::fabs(along) / (size > 1e-20f ? size : 1e-20f));
+           glazing_transmittance(std::fabs(cosine) / (size > 1e-20f ? size : 1e-20f));
 }
 
 static inline float glass_transmittance(const RayScene& s, const Ray& r) {

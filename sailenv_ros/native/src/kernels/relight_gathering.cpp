@@ -26,11 +26,7 @@ struct SideShares {
 };
 SideShares side_shares(const Hit& hit, const Ray& world) {
     const Ray r = in_body(*hit.instance, world);
-    const float* block = static_cast<const float*>(hit.instance->shape->triangles) +
-                         9 * WIDTH * int64_t{hit.triangle / WIDTH} + hit.triangle % WIDTH;
-    const vec3 a(block[3 * WIDTH], block[4 * WIDTH], block[5 * WIDTH]);
-    const vec3 b(block[6 * WIDTH], block[7 * WIDTH], block[8 * WIDTH]);
-    const vec3 normal = cross(a, b);
+    const vec3 normal = triangle_normal(*hit.instance->shape, hit.triangle);
     const float square = std::max(dot(normal, normal), 1e-30f);
     const bool away = dot(normal, vec3(r.d[0], r.d[1], r.d[2])) > 0.0f;
     SideShares shares;

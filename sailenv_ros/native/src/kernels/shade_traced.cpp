@@ -163,11 +163,7 @@ void set_hit(const SceneHit& met, vec3 from, vec3 ray, float distance, float ang
     c.colour_texels[i] = part.colour_map->texels;
     c.colour_log2[i] = static_cast<float>(part.colour_map->log2_size);
     // A pixel covers a square of the surface.
-    const float* block = static_cast<const float*>(shape.triangles) +
-                         9 * WIDTH * int64_t{met.hit.triangle / WIDTH} + met.hit.triangle % WIDTH;
-    const vec3 a(block[3 * WIDTH], block[4 * WIDTH], block[5 * WIDTH]);
-    const vec3 b(block[6 * WIDTH], block[7 * WIDTH], block[8 * WIDTH]);
-    const vec3 across = cross(a, b);
+    const vec3 across = triangle_normal(shape, met.hit.triangle);
     const float du = corner[1][3] - corner[0][3], dv = corner[1][4] - corner[0][4];
     const float eu = corner[2][3] - corner[0][3], ev = corner[2][4] - corner[0][4];
     const float area = std::sqrt(dot(across, across)), texture_area = std::fabs(du * ev - dv * eu);
