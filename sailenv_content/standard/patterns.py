@@ -69,7 +69,8 @@ class PatternTextures:
 
     def name_of(self, texture: Texture) -> str | None:
         """Return the name of a texture; None if it is of no pattern."""
-        return _names.get(id(texture))
+        known = _names.get(id(texture))
+        return None if known is None else known[1]
 
     def named(self, name: str) -> Texture:
         """Return a texture by its name; the same object each time."""
@@ -77,8 +78,12 @@ class PatternTextures:
         return _maps(pattern)[attribute]
 
 
-_names: dict[int, str] = {}
-"""Names of the textures that were asked for, which are kept, by identity."""
+_names: dict[int, tuple[Texture, str]] = {}
+"""Textures that were asked for, and their names, by identity.
+
+They are kept here: threads that ask for a pattern at once get textures each, of which `_maps` keeps
+those of one, and another array would have the identity of what is gone.
+"""
 
 
 @cache
@@ -86,7 +91,8 @@ def _maps(name: str) -> Mapping[str, Texture]:
     """Return the textures of a pattern, kept on disk: wood takes half a second."""
     code = code_digest(_CODE, libraries=("scipy",))
     maps = cached_arrays("pattern", (name,), lambda: _drawn(PATTERNS[name]), code=code)
-    _names.update((id(texture), f"{name}/{attribute}") for attribute, texture in maps.items())
+    for attribute, texture in maps.items():
+        _names[id(texture)] = texture, f"{name}/{attribute}"
     return maps
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_content.standard import patterns
-from sailenv_content.standard.patterns import PATTERNS, pattern_maps
+from sailenv_content.standard.patterns import PATTERNS, PatternTextures, pattern_maps
 
 GRAIN = PATTERNS["grain"]
 
@@ -71,3 +72,16 @@ def test_tiles_are_made_once_for_all_processes(
     for name, texture in before.items():
         np.testing.assert_array_equal(after[name], texture)
         assert not after[name].flags.writeable
+
+
+def test_no_other_array_has_the_name_of_a_texture_that_one_of_two_threads_made() -> None:
+    """A mesh on disk had a texture for positions: its identity had been that of such a texture."""
+    second = patterns._maps.__wrapped__("weave")
+    del second
+    gc.collect()
+    others = [np.zeros((4, 3)) for _ in range(2000)]
+    textures = PatternTextures()
+    assert not [name for name in map(textures.name_of, others) if name is not None]
+    known = pattern_maps(PATTERNS["weave"])["base_colour_texture"]
+    assert textures.name_of(known) == "weave/base_colour_texture"
+    assert textures.named("weave/base_colour_texture") is known
