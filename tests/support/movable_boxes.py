@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
 from sailenv_ros.light.relight.movable_objects import MovableObjects
 from sailenv_ros.light.relight.object_light import PlacedObject
 from sailenv_ros.types.geometry import Pose
@@ -40,6 +41,13 @@ def room(
 def scene_of(snapshot: WorldSnapshot) -> BakedScene:
     assert snapshot.contents.baked is not None
     return BakedScene(snapshot.contents.baked, snapshot.contents, 1)
+
+
+def scene_on_disk(snapshot: WorldSnapshot) -> BakedScene:
+    """A scene of light that is kept on disk, with nothing found in it yet."""
+    scene = BakedSceneStore().scene_of(snapshot.contents, 1)
+    scene.baked = replace(scene.baked, checksum="of its file")
+    return scene
 
 
 def moved(snapshot: WorldSnapshot, row: int, x: float) -> WorldSnapshot:

@@ -16,6 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.errors import SailenvError
+from sailenv_ros.native.array_kernel import sum_steps
+
 __all__ = ["LEVEL", "QUICK_LEVEL", "coded", "decoded", "rounded"]
 
 LEVEL, QUICK_LEVEL = 6, 1
@@ -71,14 +74,9 @@ def decoded(data: NDArray[np.uint8]) -> NDArray[Any]:
     try:
         kind, shape = _told(told)
         planes = np.frombuffer(_inflated(packed, math.prod(shape) * kind.itemsize), np.uint8)
-        planes = planes.reshape(kind.itemsize, -1)
-        small = np.ascontiguousarray(planes.T).view(_INTEGERS[kind.itemsize]).reshape(_rows(shape))
-    except (ValueError, TypeError, KeyError, zlib.error) as problem:
+        return sum_steps(planes, _rows(shape), kind).reshape(shape)
+    except (ValueError, TypeError, zlib.error, SailenvError) as problem:
         raise ValueError(f"it is no coded array ({problem})") from problem
-    one = small.dtype.type(1)
-    steps = (small >> one) ^ (~(small & one) + one)
-    array: NDArray[Any] = _sums(steps).view(kind).reshape(shape)
-    return array
 
 
 def _told(line: bytes) -> tuple[np.dtype[Any], tuple[int, ...]]:
@@ -122,11 +120,3 @@ def _differences(numbers: NDArray[Any]) -> NDArray[Any]:
         steps[..., 0] -= steps[..., 1]
         steps[..., 2] -= steps[..., 1]
     return steps
-
-
-def _sums(steps: NDArray[Any]) -> NDArray[Any]:
-    if steps.shape[2] == 3:
-        steps[..., 0] += steps[..., 1]
-        steps[..., 2] += steps[..., 1]
-    np.cumsum(steps, axis=0, dtype=steps.dtype, out=steps)
-    return np.cumsum(steps, axis=1, dtype=steps.dtype, out=steps)

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.found_light import KnownLight
+from sailenv_ros.light.relight.kept_light import kept_light, stacked, unstacked
 from sailenv_ros.light.relight.movable_objects import MovableObjects
 from sailenv_ros.light.relight.object_light import (
     ObjectLighting,
@@ -110,38 +111,26 @@ class ObjectLights:
                 self._lightings, self._still = {}, scene.found.objects
             self._lightings = {key: one for key, one in self._lightings.items() if not key}
             self._of, self._known = of, {}
-        chosen = _chosen(things)
         affected = near_changes(scene, things, changes, FAR_M) if rough else frozenset()
-        known: dict[tuple[int, int], KnownLight] = {}
-        asked = []
         every = tuple(change.key for change in changes)
-        for place in chosen:
+        known: dict[tuple[int, int], KnownLight] = {}
+        asked: list[_Asked] = []
+        for place in _chosen(things):
             thing = things[place]
-            counted = () if rough and thing.id not in affected else tuple(changes)
+            counted = () if rough and thing.id not in affected else changes
             moved = every if counted else ()
             for number, part in enumerate(self._parts(place)):
-                before = [self._known.get((thing.id, number))]
-                if number == 0:
-                    before.append(self._still.get(thing.id))
-                fitting = (one for one in before if one and _is_of(one, moved, part))
-                if (same := next(fitting, None)) is not None:
+                same = self._as_before(thing.id, number, moved, part)
+                if same is not None:
                     known[thing.id, number] = same
                     continue
                 if moved not in self._lightings:
                     self._lightings[moved] = ObjectLighting(scene, counted, self.points)
-                others = [things[other] for other in part.near]
-                key = moved, part.quality, part.around
-                asked.append(
-                    (self._lightings[moved], thing, others, part.quality, (thing.id, number), key)
-                )
+                asked.append(_Asked((thing.id, number), thing, moved, part))
         if known != self._known or asked:
-            with ExitStack() as opened:
-                # To begin a thread takes longer than the light on what moves.
-                apart = threads > 1 and len(asked) > 1
-                mapped = opened.enter_context(ThreadPoolExecutor(threads)).map if apart else map
-                found = mapped(lambda one: one[0].light_on(*one[1:4]), asked)
-                for (*_, part_of, key), light in zip(asked, found, strict=True):
-                    known[part_of] = key, light
+            # A scene begins: what follows is that of each time that it does.
+            begins = not (self._still or changes) and bool(scene.baked.checksum)
+            known |= self._found(asked, scene if begins else None, threads)
             self._known = known
             # What no change counts for is so again when furniture is back.
             self._still |= {
@@ -149,6 +138,48 @@ class ObjectLights:
             }
             self._light = {id_: _sum_of(known, id_) for id_, number in known if number == 0}
         return self._light
+
+    def _as_before(
+        self, id_: int, number: int, moved: tuple[object, ...], part: _Part
+    ) -> KnownLight | None:
+        """Return what is known already of a part of the light on an object."""
+        before = [self._known.get((id_, number))]
+        if number == 0:
+            before.append(self._still.get(id_))
+        return next((one for one in before if one and _is_of(one, moved, part)), None)
+
+    def _found(
+        self, asked: Sequence[_Asked], begins: BakedScene | None, threads: int
+    ) -> dict[tuple[int, int], KnownLight]:
+        """Find parts of light; of a scene that begins, that on what rests is kept on disk."""
+        kept: dict[tuple[int, int], ObjectLight] = {}
+        rest = [one for one in asked if begins is not None and one.part.quality is FINE]
+        if begins is not None and rest:
+            places = [one.part.around for one in rest]
+            arrays = kept_light(
+                "object_light", begins, places, lambda: stacked(self._traced(rest, threads))
+            )
+            kept = dict(zip((one.of for one in rest), unstacked(arrays), strict=True))
+        others = [one for one in asked if one.of not in kept]
+        light = kept | dict(
+            zip((one.of for one in others), self._traced(others, threads), strict=True)
+        )
+        return {
+            one.of: ((one.moved, one.part.quality, one.part.around), light[one.of]) for one in asked
+        }
+
+    def _traced(self, asked: Sequence[_Asked], threads: int) -> list[ObjectLight]:
+        things = self._movable.things
+
+        def trace(one: _Asked) -> ObjectLight:
+            near = [things[other] for other in one.part.near]
+            return self._lightings[one.moved].light_on(one.thing, near, one.part.quality)
+
+        with ExitStack() as opened:
+            # To begin a thread takes longer than the light on what moves.
+            apart = threads > 1 and len(asked) > 1
+            mapped = opened.enter_context(ThreadPoolExecutor(threads)).map if apart else map
+            return list(mapped(trace, asked))
 
     def _parts(self, place: int) -> tuple[_Part, ...]:
         """Return what the light on an object is put together from.
@@ -186,6 +217,25 @@ class _Part(NamedTuple):
     quality: Quality
     near: list[int]
     around: tuple[Place, ...]
+
+
+class _Asked(NamedTuple):
+    """A part of the light on an object that is to be found.
+
+    Attributes
+    ----------
+    of : tuple of int
+        Id of the object and number of the part.
+    thing : PlacedObject
+    moved : tuple
+        Keys of the changes that count.
+    part : _Part
+    """
+
+    of: tuple[int, int]
+    thing: PlacedObject
+    moved: tuple[object, ...]
+    part: _Part
 
 
 def _sum_of(known: Mapping[tuple[int, int], KnownLight], id_: int) -> ObjectLight:

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeAlias
 
-from sailenv_ros.light.relight.baked_scene import BakedScene, albedo_of_model
+from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.found_light import MOST_PLACES
+from sailenv_ros.light.relight.kept_light import kept_light
 from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
 from sailenv_ros.light.relight.object_light import (
     ObjectLighting,
@@ -21,10 +22,8 @@ from sailenv_ros.light.relight.object_light import (
 )
 from sailenv_ros.light.relight.object_shadows import ObjectShadows
 from sailenv_ros.light.relight.scene_changes import Change
-from sailenv_ros.native.library import native_library
-from sailenv_ros.system.array_cache import Arrays, cached_arrays, code_digest
+from sailenv_ros.system.array_cache import Arrays
 from sailenv_ros.types.baked_light import BakedLight
-from sailenv_ros.types.digests import model_digest
 
 __all__ = ["ShownShadows"]
 
@@ -134,11 +133,7 @@ class ShownShadows:
 
     def _on_disk(self, find: Callable[[], Arrays], *, keep: bool = True) -> Arrays:
         """Return what is kept on disk of shadows of things that have been where they have been."""
-        scene = self._scene
-        told = [[_told(place) for place in places] for places in self._places or ()]
-        code = code_digest("light/bake", "light/relight", "native", "rays", "types")
-        key = scene.baked.checksum, native_library().digest, *scene.drawn, *told
-        return cached_arrays("shadows", key, find, code=code, keep=keep)
+        return kept_light("shadows", self._scene, self._places or (), find, keep=keep)
 
     def _with_changes(
         self, still: ObjectShadows, changes: Sequence[Change], things: Sequence[PlacedObject]
@@ -156,9 +151,3 @@ def _more(
     if places is None or len(places) == MOST_PLACES:
         return None
     return *places, tuple(thing.place for _, thing in things.values())
-
-
-def _told(place: Place) -> tuple[object, ...]:
-    """Return what shadows of an object at a place depend on, as it is told between processes."""
-    id_, model, scale, pose = place
-    return id_, scale, pose, model_digest(model), albedo_of_model(model).tolist()

@@ -10,6 +10,7 @@ does not define. What kernels compute is tested elsewhere. Add a function for ea
 from __future__ import annotations
 
 import contextlib
+import math
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -22,6 +23,7 @@ from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import QUICK
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.native.array_kernel import sum_steps
 from sailenv_ros.native.lens import LENS
 from sailenv_ros.native.lens_light import scale_light, weigh_light
 from sailenv_ros.native.lens_models import (
@@ -93,6 +95,17 @@ def drive_png_rows() -> None:
                 filtered = random.integers(256, size=(height, 1 + width), dtype=np.uint8)
                 filtered[:, 0] = random.choice(filters, size=height)
                 png_rows(filtered, step)
+
+
+def drive_sum_steps() -> None:
+    """Noise as numbers of each size, no rows, rows of nothing; a size that does not exist."""
+    random = np.random.default_rng(6)
+    for kind in ("u1", "<f2", "<i4", "<f8", "<c16"):
+        for rows in ((0, 5, 3), (4, 0, 1), (1, 1, 1), (3, 33, 3), (2, 7, 2)):
+            size = math.prod(rows) * np.dtype(kind).itemsize
+            planes = random.integers(256, size=size, dtype=np.uint8)
+            with contextlib.suppress(NativeLibraryError):
+                sum_steps(planes, rows, np.dtype(kind))
 
 
 def drive_self_test() -> None:
@@ -407,6 +420,7 @@ DRIVERS: tuple[Callable[[], None], ...] = (
     drive_self_test,
     drive_png_data,
     drive_png_rows,
+    drive_sum_steps,
     drive_lenses,
     drive_annotate,
     drive_motion,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,7 @@ from tests.support.movable_boxes import (
     moved,
     room,
     scene_of,
+    scene_on_disk,
 )
 from tests.support.tiny_scenes import box_mesh, model_of
 
@@ -117,6 +119,11 @@ def test_sides_that_face_each_other_are_darker() -> None:
     assert inner < 0.35 * outer
 
 
+def assert_same(one: ObjectLight, two: ObjectLight) -> None:
+    for name in ("bounced", "direct", "axes"):
+        assert np.array_equal(getattr(one, name), getattr(two, name))
+
+
 def test_light_is_a_function_of_what_stands_where() -> None:
     """Threads, and what was shown before, change no bit; what stands still keeps its mapping."""
     snapshot = room((BOX, IN_THE_AIR), (BOX, Pose((0.6, 0.0, 0.5))), lights=(LAMP,))
@@ -131,8 +138,7 @@ def test_light_is_a_function_of_what_stands_where() -> None:
     for light, same in ((back, first), (other, first), (late, away)):
         assert light.keys() == same.keys() == {2, 3}
         for id_, own in same.items():
-            assert np.array_equal(own.bounced, light[id_].bounced)
-            assert np.array_equal(own.direct, light[id_].direct)
+            assert_same(own, light[id_])
 
 
 def test_many_things_on_their_way_cost_little(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -152,8 +158,8 @@ def test_many_things_on_their_way_cost_little(monkeypatch: pytest.MonkeyPatch) -
     assert np.array_equal(again[2].bounced, rest[2].bounced)
 
 
-def test_what_moves_near_an_object_that_rests_costs_little(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Few rays tell the difference that it makes, as if all were found anew with many."""
+def asked_qualities(monkeypatch: pytest.MonkeyPatch) -> list[Quality]:
+    """A list to which the quality of all light is appended that is found from now on."""
     asked: list[Quality] = []
     of_one = ObjectLighting.light_on
 
@@ -162,6 +168,12 @@ def test_what_moves_near_an_object_that_rests_costs_little(monkeypatch: pytest.M
         return of_one(self, *arguments)
 
     monkeypatch.setattr(ObjectLighting, "light_on", light_on)
+    return asked
+
+
+def test_what_moves_near_an_object_that_rests_costs_little(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few rays tell the difference that it makes, as if all were found anew with many."""
+    asked = asked_qualities(monkeypatch)
     gap = 0.25
     snapshot = room((BOX, IN_THE_AIR), (BOX, Pose((gap, 0.0, 1.0))), environment=WHITE_SKY)
     scene, lights = scene_of(snapshot), ObjectLights()
@@ -179,6 +191,30 @@ def test_what_moves_near_an_object_that_rests_costs_little(monkeypatch: pytest.M
         at = tuple(0.1 * np.array(normal) + (0.0, 0.0, 1.0))
         near, wanted = (value(one[2], one[2].bounced[0, :, 1], normal, at) for one in (shown, rest))
         assert near == pytest.approx(wanted, rel=0.08)
+
+
+def test_light_on_what_rests_is_kept_of_a_beginning(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Of a bake on disk: it is what would be found, and is found once; later places are not."""
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+    snapshot = room((BOX, IN_THE_AIR), (BOX, Pose((0.4, 0.3, 1.0))), environment=WHITE_SKY)
+
+    def seen() -> list[dict[int, ObjectLight]]:
+        lights, scene = ObjectLights(), scene_on_disk(snapshot)
+        places = snapshot, moved(snapshot, 1, -0.5)
+        return [dict(lights.update(one, scene, (), threads=1)) for one in places]
+
+    found = seen()
+    assert len(list((tmp_path / "arrays").glob("object_light-*"))) == 1
+    asked = asked_qualities(monkeypatch)
+    read = seen()
+    # Those that have one beside them send out light, and the one that has moved.
+    assert asked.count(FINE) == 2
+    for one, two in zip(found, read, strict=True):
+        assert one.keys() == two.keys() == {2, 3}
+        for id_ in one:
+            assert_same(one[id_], two[id_])
 
 
 def test_creeping_by_less_than_can_be_seen_changes_nothing() -> None:

@@ -40,6 +40,7 @@ from tests.support.movable_boxes import (
     moved,
     room,
     scene_of,
+    scene_on_disk,
 )
 from tests.support.tiny_scenes import box_mesh, model_of
 
@@ -230,23 +231,18 @@ def test_shadows_that_were_kept_are_those_that_are_found(
     def kept() -> int:
         return len(list((tmp_path / "arrays").glob("shadows-*")))
 
-    def scene_on_disk() -> BakedScene:
-        scene = BakedSceneStore().scene_of(snapshot.contents, 1)
-        scene.baked = replace(scene.baked, checksum="of its file")
-        return scene
-
     def shown(scene: BakedScene) -> list[BakedLight]:
         shadows = ShownShadows(scene, SurfacePoints())
         return [shadows.on(scene.baked, one, (), threads=1) for one in things]
 
-    scene = scene_on_disk()
+    scene = scene_on_disk(snapshot)
     found = shown(scene)
     assert kept() == 1
     again = shown(scene)
     assert kept() == 2
     with monkeypatch.context() as patched:
         patched.setattr(ObjectShadows, "update", lambda *_: pytest.fail("found anew"))
-        read = shown(scene_on_disk())
+        read = shown(scene_on_disk(snapshot))
     for one, two, three in zip(found, again, read, strict=True):
         assert_same(one, two)
         assert_same(one, three)
@@ -260,8 +256,7 @@ def test_a_beginning_that_was_kept_has_its_next_shadows_kept(
     snapshot = room((BOX, ON_THE_FLOOR), (BOX, Pose((0.4, 0.3, 0.101))), environment=WHITE_SKY)
     counts = []
     for _ in range(2):
-        scene = BakedSceneStore().scene_of(snapshot.contents, 1)
-        scene.baked = replace(scene.baked, checksum="of its file")
+        scene = scene_on_disk(snapshot)
         shadows = ShownShadows(scene, SurfacePoints())
         for by in (0.0, -0.5, -0.4, -0.3):
             things = movable_objects(moved(snapshot, 1, by))
