@@ -410,7 +410,8 @@ void smooth_edges_of_band(const Shading& shading, int32_t first_row, int32_t las
     list_band(shading, first_row, last_row, scratch);
     scratch.light.resize(4 * scratch.fragments.size());
     shade_fragments(shading, scratch.fragments.data(),
-                    static_cast<int64_t>(scratch.fragments.size()), scratch.light.data());
+                    static_cast<int64_t>(scratch.fragments.size()), scratch.rough,
+                    scratch.light.data());
     mix_in(shading, scratch);
 }
 

@@ -16,6 +16,7 @@ struct EdgeScratch {
     int64_t stride = 0;
     std::vector<Fragment> fragments;
     std::vector<uint16_t> light;  // four halves of each
+    RoughBand rough;
 };
 
 // Numbers from row to row of fine samples. Behind the last one is room for eight, and as many

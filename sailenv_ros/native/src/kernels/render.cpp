@@ -179,11 +179,9 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
             draw_band(scratch.opaque, parts, projection, band, band_rows, scratch.stride, visible,
                       inverse_depth);
         }
-        shade_band(shading, first_row, end_row);
-        if (smoothed) {
-            smooth_edges_of_band(shading, first_row, end_row,
-                                 scratch.edges[static_cast<size_t>(slot)]);
-        }
+        EdgeScratch* edges = smoothed ? &scratch.edges[static_cast<size_t>(slot)] : nullptr;
+        shade_band(shading, first_row, end_row, smoothed ? &edges->rough : nullptr);
+        if (smoothed) smooth_edges_of_band(shading, first_row, end_row, *edges);
         if (glazed) {
             draw_glass_band(shading, scratch.glass, glass, projection, band, band_rows,
                             scratch.inverse_depth.data());

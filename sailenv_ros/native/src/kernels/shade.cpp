@@ -98,8 +98,8 @@ void shine_as_outside(const Shading& s, Chunk& c) {
     }
 }
 
-// The light of what was gathered; `before` as in `trace_reflections`.
-void light_chunk(const Shading& s, Chunk& c, TracedRow* before) {
+// The light of what was gathered.
+void light_chunk(const Shading& s, Chunk& c, const TracedPlaces& places) {
     if (!c.hit) {
         for (int32_t i = 0; i < c.padded; i += 8) {
             c.light.set(i, splat(vec3(0.0f, 0.0f, 0.0f)));
@@ -124,7 +124,7 @@ void light_chunk(const Shading& s, Chunk& c, TracedRow* before) {
         light_from_sky(s, c);
     }
     mirror_surroundings(s, c);
-    if (s.light->reflecting && s.light->traced != nullptr) trace_reflections(s, c, before);
+    if (s.light->reflecting && s.light->traced != nullptr) trace_reflections(s, c, places);
     reflect_to_eye(s, c);
 }
 
@@ -156,7 +156,7 @@ void write_radiance(const Shading& s, const Chunk& c, uint16_t* radiance) {
     memcpy(radiance, out, static_cast<size_t>(c.count) * 8);
 }
 
-void shade_chunk(const Shading& s, Chunk& c, TracedRow& before) {
+void shade_chunk(const Shading& s, Chunk& c, const TracedPlaces& places) {
     const Outputs& wanted = *s.outputs;
     if (!wanted.radiance && !wants_attributes(wanted)) {
         if (wanted.surface != nullptr) write_surface(s, c.x, c.y, c.count);
@@ -173,7 +173,7 @@ void shade_chunk(const Shading& s, Chunk& c, TracedRow& before) {
     set_rays(s, c);
     write_attributes(s, c);
     if (s.outputs->radiance == nullptr) return;
-    light_chunk(s, c, &before);
+    light_chunk(s, c, places);
     write_radiance(s, c, s.outputs->radiance + 4 * (c.y * s.width + c.x));
 }
 
@@ -190,22 +190,26 @@ Vec3x8 rays_of_faces(const Shading& s, f8 x, f8 y, i8 faces) {
     return rays;
 }
 
-void shade_band(const Shading& s, int32_t first_row, int32_t last_row) {
+void shade_band(const Shading& s, int32_t first_row, int32_t last_row, RoughBand* rough) {
     Chunk chunk;
-    for (int32_t x = 0; x < s.width; x += CHUNK) {
-        const int64_t rest = s.width - x;
-        chunk.x = x;
-        chunk.count = static_cast<int32_t>(rest < CHUNK ? rest : CHUNK);
-        chunk.padded = (chunk.count + 7) & ~7;
-        TracedRow before;
-        for (int32_t y = first_row; y < last_row; y++) {
+    if (rough != nullptr) rough->begin(first_row, last_row, s.width);
+    const int32_t columns = static_cast<int32_t>((s.width + CHUNK - 1) / CHUNK);
+    // One more on either side, of which nothing is known.
+    std::vector<TracedRow> before(static_cast<size_t>(columns) + 2);
+    for (int32_t y = first_row; y < last_row; y++) {
+        for (int32_t column = 0; column < columns; column++) {
+            chunk.x = column * CHUNK;
+            const int64_t rest = s.width - chunk.x;
+            chunk.count = static_cast<int32_t>(rest < CHUNK ? rest : CHUNK);
+            chunk.padded = (chunk.count + 7) & ~7;
             chunk.y = y;
-            shade_chunk(s, chunk, before);
+            shade_chunk(s, chunk, {&before[static_cast<size_t>(column) + 1], rough, nullptr});
         }
     }
 }
 
-void shade_fragments(const Shading& s, const Fragment* fragments, int64_t count, uint16_t* out) {
+void shade_fragments(const Shading& s, const Fragment* fragments, int64_t count, RoughBand& rough,
+                     uint16_t* out) {
     Chunk chunk;
     for (int64_t first = 0; first < count; first += CHUNK) {
         const int64_t rest = count - first;
@@ -213,7 +217,7 @@ void shade_fragments(const Shading& s, const Fragment* fragments, int64_t count,
         chunk.padded = (chunk.count + 7) & ~7;
         gather_fragments(s, fragments + first, chunk);
         set_rays(s, chunk);
-        light_chunk(s, chunk, nullptr);
+        light_chunk(s, chunk, {nullptr, &rough, fragments + first});
         write_radiance(s, chunk, out + 4 * first);
     }
 }

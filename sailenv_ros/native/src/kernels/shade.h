@@ -63,8 +63,31 @@ Vec3x8 mirrored_room(const Light& light, i8 point, Vec3x8 at, Vec3x8 direction, 
 Vec3x8 trace_glass(const Shading& shading, Vec3x8 point, Vec3x8 direction, f8 distance, i8 wanted,
                    Vec3x8 mirrored);
 
-// Shades the pixels of one band: radiance, surfaces, normals, as wanted.
-void shade_band(const Shading& shading, int32_t first_row, int32_t last_row);
+// What rough surfaces of a band mirror by rays, for the samples at their edges.
+struct RoughBand {
+    int32_t first_row, rows, width;
+    std::vector<int32_t> ids;  // of each pixel the instance, or 0 where no rays tell
+    std::vector<vec3> normals, mirrored;
+
+    void begin(int32_t first, int32_t last, int64_t across) {
+        first_row = first;
+        rows = last - first;
+        width = static_cast<int32_t>(across);
+        const size_t size = static_cast<size_t>(rows) * static_cast<size_t>(width);
+        ids.assign(size, 0);
+        normals.resize(size);
+        mirrored.resize(size);
+    }
+    bool has_row(int32_t y) const { return y >= first_row && y < first_row + rows; }
+    size_t place(int32_t x, int32_t y) const {
+        return static_cast<size_t>(y - first_row) * static_cast<size_t>(width) +
+               static_cast<size_t>(x);
+    }
+};
+
+// Shades the pixels of one band: radiance, surfaces, normals, as wanted. `rough` is null where no
+// samples at edges follow.
+void shade_band(const Shading& shading, int32_t first_row, int32_t last_row, RoughBand* rough);
 
 // What some samples of a pixel see besides what its centre sees.
 struct Fragment {
@@ -75,10 +98,10 @@ struct Fragment {
     int32_t face;
 };
 
-// Shades some points of surfaces: exposed radiance and the share of it that came from around, four
-// halves each.
+// Shades some points of surfaces of a band: exposed radiance and the share of it that came from
+// around, four halves each.
 void shade_fragments(const Shading& shading, const Fragment* fragments, int64_t count,
-                     uint16_t* light);
+                     RoughBand& rough, uint16_t* light);
 
 // Draws see-through surfaces over a band of radiance.
 void draw_glass_band(const Shading& shading, const TriangleSet& glass, const DrawList& parts,

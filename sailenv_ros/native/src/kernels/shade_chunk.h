@@ -105,9 +105,17 @@ struct TracedRow {
     Vectors sum, normal;
 };
 
-// Puts in its place what rays meet, where that is worth it; see shade_traced.cpp. `before` is what
-// rows above met, and is brought up to date; null for pixels that lie anywhere.
-void trace_reflections(const Shading& s, Chunk& c, TracedRow* before);
+// Where a chunk's pixels lie, and what rays of others met.
+struct TracedPlaces {
+    // Of rows above; brought up to date; null for points that lie anywhere. Before and behind it
+    // stand those of the chunks beside this one.
+    TracedRow* before;
+    RoughBand* rough;           // written for rows, read for points; null where there are none
+    const Fragment* fragments;  // of points
+};
+
+// Puts in its place what rays meet, where that is worth it; see shade_traced.cpp.
+void trace_reflections(const Shading& s, Chunk& c, const TracedPlaces& places);
 
 // The direction from which a surface mirrors light to the eye.
 LANES_INLINE Vec3x8 mirrored_ray(const Chunk& c, int32_t i) {

@@ -1,8 +1,11 @@
 // Shading: what polished surfaces mirror of what stands around them, by rays.
 //
 // What a ray meets is lit like what the camera sees, and mirrors the pictures of the room. Rough
-// surfaces, and such as bend more from pixel to pixel than rays can stand for, mirror these
-// pictures themselves.
+// surfaces mirror these pictures themselves, but for what stands near; so do surfaces that bend
+// more from pixel to pixel than rays can stand for.
+#include <algorithm>
+#include <cstring>
+
 #include "rays.h"
 #include "shade_chunk.h"
 #include "texture.h"
@@ -21,13 +24,22 @@ vec3 unit(vec3 a) { return a * (1.0f / std::sqrt(dot(a, a))); }
 
 constexpr float BEGIN_M = 5e-4f;  // a point lies that far from its surface, at most
 
-// From where on a surface mirrors pictures of the room, more and more, and alone.
-constexpr float SMOOTH = 0.22f, ROUGH = 0.36f;
+// From where on a surface mirrors pictures of the room, more and more, but for what stands near,
+// and from where on also in its place.
+constexpr float SMOOTH = 0.22f, ROUGH = 0.36f, ROUGHER = 0.42f, ROUGHEST = 0.52f;
+// Few rays do not find what is bright and small, as pictures do; these do not know what stands
+// near: from where on less and less of a ray counts, and none [m].
+constexpr float NEAR_M = 0.3f, FAR_M = 0.8f;
 // The same of the angle between the mirrored rays of neighbouring pixels [rad].
 constexpr float FLAT = 0.05f, BENT = 0.15f;
 // Share that is mirrored of all light that is sent back, where light is even: from where on rays
 // are worth it, and several are.
 constexpr float LEAST_SHARE = 0.25f, WHOLE_SHARE = 0.4f, LARGE_SHARE = 0.6f;
+// By how much more than these it is of rough surfaces.
+constexpr float MORE_OF_ROUGH = 0.2f;
+// Less than that is mirrored by what sends back so much otherwise, seen by a cosine of so much: at
+// most 0.088 of the light.
+constexpr float BRIGHT = 0.12f, STEEP = 0.45f;
 // Of samples at edges, which lie anywhere: angle between the mirrored rays of pixels [rad].
 constexpr float USUAL_ANGLE = 0.004f;
 
@@ -35,9 +47,14 @@ constexpr float USUAL_ANGLE = 0.004f;
 // wider it is; those around share what these meet. Where much is mirrored sharply, each pixel has
 // its own.
 constexpr int32_t LOBE = 16, ROUGH_RAYS = 4, OWN_RAYS = 2;
+// Rays of one above which none of the same surface has looked, and what counts of a row above.
+constexpr int32_t FIRST_RAYS = 8;
+constexpr float KEPT_SHARE = 0.87f;
+// Pixels on either side that do for one where those that should look are of something else.
+constexpr int32_t BESIDE = 3;
 // Roughness squared over the angle between pixels' rays, from where on every second pixel, every
 // fourth and every eighth looks.
-constexpr float SECOND = 1.0f, FOURTH = 18.0f, EIGHTH = 50.0f;
+constexpr float SECOND = 1.0f, FOURTH = 10.0f, EIGHTH = 24.0f;
 // Angle between pixels' rays from where on pixels beside are looked at, so that nothing is missed.
 constexpr float CURVED = 0.03f, FLAT_PLANE = 0.01f;
 constexpr float ALIKE = 0.97f;  // cosine between normals of those who share
@@ -51,6 +68,13 @@ constexpr float SLOPE_X[LOBE] = {-1.21133f, 0.55872f,  -0.13554f, -0.02382f, 0.8
 constexpr float SLOPE_Y[LOBE] = {-0.56852f, 0.67262f,  -0.52139f, 0.12766f,  -1.12682f, 0.44042f,
                                  -0.03939f, -0.06680f, 1.04116f,  -0.88632f, 0.58596f,  -0.19466f,
                                  0.81845f,  -0.13461f, -0.18134f, 0.17932f};
+
+// Cosines and sines of 0, 1, 2 … times the golden angle.
+constexpr int32_t TURNS = 8;
+constexpr float TURN_X[TURNS] = {1.0f,       -0.737369f, 0.087426f,  0.608439f,
+                                 -0.984713f, 0.843755f,  -0.259604f, -0.460907f};
+constexpr float TURN_Y[TURNS] = {0.0f,       0.675490f,  -0.996171f, 0.793601f,
+                                 -0.174182f, -0.536728f, 0.965715f,  -0.887448f};
 
 // What of a chunk is looked at by rays.
 struct TracedPixels {
@@ -68,10 +92,11 @@ struct SceneHit {
     const TracedInstance* instance = nullptr;
 };
 
-SceneHit closest_hit(const TracedScene& scene, vec3 from, vec3 ray) {
+SceneHit closest_hit(const TracedScene& scene, vec3 from, vec3 ray, float reach) {
     const float o[3] = {from.x, from.y, from.z}, d[3] = {ray.x, ray.y, ray.z};
     const Ray r = ray_of(o, d, BEGIN_M);
     SceneHit met;
+    met.hit.t = reach;
     if (scene.count == 0) return met;
     walk_tree<true>(scene.nodes, box_ray(r.o, r.d, 0.0f), 0.0f, met.hit.t,
                     [&](int32_t leaf, float) {
@@ -110,7 +135,7 @@ float ray_spread(const Chunk& c, const Vectors& rays, int32_t i) {
     for (int32_t other = i - 1; other <= i + 1; other += 2) {
         if (other < 0 || other >= c.count || c.empty[other] || c.id[other] != c.id[i]) continue;
         // Of rougher parts no rays are known.
-        if (c.roughness[other] >= ROUGH || is_beside_face(c, i, other)) continue;
+        if (c.roughness[other] >= ROUGHEST || is_beside_face(c, i, other)) continue;
         const vec3 apart = vector_at(rays, other) - vector_at(rays, i);
         least = min(least, dot(apart, apart));
     }
@@ -216,18 +241,22 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
     bool some = false;
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 roughness = load(c.roughness + i);
-        const i8 smooth = (roughness < ROUGH) & ~load(c.empty + i);
+        const i8 smooth = (roughness < ROUGHEST) & ~load(c.empty + i);
         store(pixels.share + i, splat(0.0f));
         if (!any(smooth)) continue;
         const Vec3x8 ray = c.ray.at(i);
         const f8 cosine = abs8(dot(c.normal.at(i), ray) * inverse_length(ray)) + 1e-4f;
+        const f8 metallic = load(c.metallic + i);
+        const f8 diffuse = luminance(c.base.at(i)) * (1.0f - metallic);
+        const i8 bright = (roughness >= ROUGH) & (diffuse > BRIGHT) & (cosine > STEEP);
+        if (!any(smooth & ~(bright & (metallic < 0.05f)))) continue;
         const Mirroring term = mirroring(roughness, cosine);
-        const Vec3x8 f0 = reflectance_head_on(c.base.at(i), load(c.metallic + i));
+        const Vec3x8 f0 = reflectance_head_on(c.base.at(i), metallic);
         const f8 sharp = luminance(f0 * term.x + term.y);
-        const f8 diffuse = luminance(c.base.at(i)) * (1.0f - load(c.metallic + i));
         const f8 mirrored = sharp / (sharp + diffuse);
-        const f8 share = smoothstep(LEAST_SHARE, WHOLE_SHARE, mirrored) *
-                         (1.0f - smoothstep(SMOOTH, ROUGH, roughness));
+        const f8 more = MORE_OF_ROUGH * smoothstep(SMOOTH, ROUGH, roughness);
+        const f8 share = smoothstep(LEAST_SHARE, WHOLE_SHARE, mirrored - more) *
+                         (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness));
         // Rays of a relief lead everywhere: too few would be alike.
         const i8 uneven =
             c.detailed ? (load(c.relief + i) > 0.0f) & (mirrored < LARGE_SHARE) : i8{};
@@ -239,12 +268,12 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
     }
     if (!some) return false;
     some = false;
+    memset(pixels.ray_count, 0, sizeof pixels.ray_count);
+    memset(pixels.row.weight, 0, sizeof pixels.row.weight);
+    memset(&pixels.row.sum, 0, sizeof pixels.row.sum);
+    memcpy(&pixels.row.normal, &c.normal, sizeof c.normal);
+    memcpy(pixels.row.id, c.id, sizeof c.id);
     for (int32_t i = 0; i < c.count; i++) {
-        pixels.row.weight[i] = 0.0f;
-        pixels.ray_count[i] = 0;
-        put(pixels.row.sum, i, {0.0f, 0.0f, 0.0f});
-        put(pixels.row.normal, i, vector_at(c.normal, i));
-        pixels.row.id[i] = c.id[i];
         if (!(pixels.share[i] > 0.0f)) continue;
         const float angle = pixels.angle[i] = of_row ? ray_spread(c, pixels.rays, i) : USUAL_ANGLE;
         pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
@@ -256,7 +285,7 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
 
 // Whether what the rays of a pixel of a row met counts for another one, too.
 bool shares(const Chunk& c, int32_t i, const TracedRow& row, int32_t other) {
-    return other >= 0 && other < c.count && row.weight[other] > 0.0f &&
+    return other >= 0 && other < CHUNK && row.weight[other] > 0.0f &&
            is_alike(c.id[i], c.normal, i, row.id[other], row.normal, other);
 }
 
@@ -276,18 +305,36 @@ bool neighbours_do(const Chunk& c, const TracedPixels& pixels, const TracedRow* 
     return false;
 }
 
-// Says how many rays each pixel has; `before` is a row above, or null for pixels that lie anywhere.
-void count_rays(const Chunk& c, const TracedRow* before, TracedPixels& pixels) {
+// The same of those beside it, of something narrow.
+bool one_beside_does(const Chunk& c, const TracedPixels& pixels, const TracedRow* above,
+                     int32_t i) {
+    for (int32_t other = i - BESIDE; other <= i + BESIDE; other++) {
+        if (above != nullptr && shares(c, i, *above, other)) return true;
+        if (other < 0 || other >= i || pixels.ray_count[other] == 0) continue;
+        if (is_alike(c.id[i], c.normal, i, c.id[other], c.normal, other)) return true;
+    }
+    return false;
+}
+
+// Says how many rays each pixel has; `last` is the nearest row above that has some.
+void count_rays(const Chunk& c, bool of_row, const TracedRow* last, TracedPixels& pixels) {
+    const TracedRow* above = (c.y & 1) != 0 ? last : nullptr;
     for (int32_t i = 0; i < c.count; i++) {
         if (!(pixels.share[i] > 0.0f)) continue;
-        const bool much = pixels.mirrored[i] >= LARGE_SHARE;
+        const bool much = pixels.mirrored[i] >= LARGE_SHARE, rough = c.roughness[i] >= ROUGH;
         pixels.ray_count[i] = much && pixels.angle[i] > CURVED ? OWN_RAYS : 1;
-        if (before == nullptr || pixels.step[i] == 1) continue;
+        if (!of_row || pixels.step[i] == 1) continue;
         const bool flat = pixels.angle[i] < FLAT_PLANE || pixels.step[i] > 2;
-        pixels.ray_count[i] =
-            much ? (flat ? ROUGH_RAYS : OWN_RAYS) : (pixels.step[i] > 2 ? OWN_RAYS : 1);
-        const TracedRow* above = (c.y & 1) != 0 && before->y == c.y - 1 ? before : nullptr;
-        if (neighbours_do(c, pixels, above, i)) pixels.ray_count[i] = 0;
+        if (much && flat && !rough)
+            pixels.ray_count[i] = ROUGH_RAYS;
+        else if (much || rough || pixels.step[i] > 2)
+            pixels.ray_count[i] = OWN_RAYS;
+        if (neighbours_do(c, pixels, above, i) ||
+            (pixels.step[i] > 2 && one_beside_does(c, pixels, above, i))) {
+            pixels.ray_count[i] = 0;
+        } else if (rough && pixels.step[i] > 2 && (last == nullptr || !shares(c, i, *last, i))) {
+            pixels.ray_count[i] = FIRST_RAYS;
+        }
     }
 }
 
@@ -299,21 +346,47 @@ vec3 lobe_ray(const Shading& s, const Chunk& c, const TracedPixels& pixels, int3
     const int32_t row = static_cast<int32_t>(std::floor(c.at_y[i] * scale + 0.5f));
     // Those who share have other rays each.
     const int32_t begin =
-        pixels.step[i] > 1 ? column / pixels.step[i] + 3 * (row >> 1) : 5 * column + 7 * row;
+        pixels.step[i] > 1 ? column / pixels.step[i] + 2 * (row >> 1) : 5 * column + 7 * row;
     const int32_t k = (begin + number * (LOBE / pixels.ray_count[i])) & (LOBE - 1);
     const float rough = c.roughness[i] * c.roughness[i], least = 0.25f * pixels.angle[i];
     const float wide = rough > least ? rough : least;
+    // Other rays in each row that looks.
+    const int32_t turn = pixels.step[i] > 2 ? (row >> 1) & (TURNS - 1) : 0;
+    const float x = wide * (SLOPE_X[k] * TURN_X[turn] - SLOPE_Y[k] * TURN_Y[turn]);
+    const float y = wide * (SLOPE_X[k] * TURN_Y[turn] + SLOPE_Y[k] * TURN_X[turn]);
     const vec3 n = vector_at(c.normal, i);
     // Two axes across the normal (Duff et al. 2017, "Building an orthonormal basis, revisited").
     const float sign = n.z < 0.0f ? -1.0f : 1.0f, a = -1.0f / (sign + n.z), b = n.x * n.y * a;
     const vec3 first(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
     const vec3 second(b, sign + n.y * n.y * a, -n.y);
-    const vec3 facet = unit(n + first * (wide * SLOPE_X[k]) + second * (wide * SLOPE_Y[k]));
+    const vec3 facet = unit(n + first * x + second * y);
     const vec3 along = unit(vector_at(c.ray, i));
     const vec3 ray = along - facet * (2.0f * dot(along, facet));
     // Below the surface there is nothing to be seen.
     if (dot(ray, n) < 0.02f) return vector_at(pixels.rays, i);
     return ray;
+}
+
+// How much a ray of the lobe counts: its directions are as dense as the slopes of microfacets, seen
+// from above (Walter et al. 2007, "Microfacet models for refraction through rough surfaces").
+float lobe_weight(const Chunk& c, int32_t i, vec3 ray) {
+    const vec3 normal = vector_at(c.normal, i);
+    // All of a narrow lobe counts nearly alike.
+    if (c.roughness[i] < SMOOTH) return dot(normal, ray);
+    const vec3 view = unit(vector_at(c.ray, i)) * -1.0f;
+    const vec3 facet = unit(ray + view);
+    const float nl = max(dot(normal, ray), 1e-3f), vh = max(dot(view, facet), 0.0f);
+    const float square = c.roughness[i] * c.roughness[i], a2 = square * square;
+    const float seen = 2.0f * nl / (nl + std::sqrt(a2 + (1.0f - a2) * nl * nl));
+    const float base = luminance(vector_at(c.base, i));
+    const float f0 = 0.04f + (base - 0.04f) * c.metallic[i], away = 1.0f - vh;
+    const float away2 = away * away, fresnel = f0 + (1.0f - f0) * away2 * away2 * away;
+    return fresnel * seen * vh / max(dot(normal, facet), 1e-3f);
+}
+
+// By how much what a ray meets counts, not the pictures.
+float hit_share(float roughness, float distance) {
+    return 1.0f - smoothstep(SMOOTH, ROUGH, roughness) * smoothstep(NEAR_M, FAR_M, distance);
 }
 
 // Follows one ray of each pixel that has so many, and adds what they meet.
@@ -327,15 +400,15 @@ void trace_rays(const Shading& s, const Chunk& c, int32_t number, TracedPixels& 
         if (number >= pixels.ray_count[i]) continue;
         const vec3 begin = vector_at(c.point, i);
         const vec3 ray = lobe_ray(s, c, pixels, i, number);
-        const SceneHit met = closest_hit(*s.light->traced, begin, ray);
-        const float weight = dot(ray, vector_at(c.normal, i));
+        const SceneHit met =
+            closest_hit(*s.light->traced, begin, ray, c.roughness[i] < ROUGH ? ENDLESS : FAR_M);
+        const float weight = lobe_weight(c, i, ray);
+        const float hit = is_drawn(met) ? weight * hit_share(c.roughness[i], met.hit.t) : 0.0f;
         pixels.row.weight[i] += weight;
-        weights[count] = weight;
-        if (!is_drawn(met)) {
-            const vec3 sum = vector_at(pixels.row.sum, i);
-            put(pixels.row.sum, i, sum + vector_at(c.mirrored, i) * weight);
-            continue;
-        }
+        const vec3 sum = vector_at(pixels.row.sum, i);
+        put(pixels.row.sum, i, sum + vector_at(c.mirrored, i) * (weight - hit));
+        if (!(hit > 0.0f)) continue;
+        weights[count] = hit;
         const vec3 along = vector_at(c.ray, i);
         const float distance = c.depth[i] * std::sqrt(dot(along, along));
         const float rough = 0.5f * c.roughness[i] * c.roughness[i];
@@ -350,46 +423,144 @@ void trace_rays(const Shading& s, const Chunk& c, int32_t number, TracedPixels& 
     }
 }
 
-// Adds what the pixels around a place in a row met, the nearer the more.
+// What pixels around a place met.
+struct Met {
+    vec3 sum = {0.0f, 0.0f, 0.0f};
+    float weight = 0.0f;
+
+    void add(const TracedRow& row, int32_t i, float share) {
+        sum = sum + vector_at(row.sum, i) * share;
+        weight += row.weight[i] * share;
+    }
+};
+
+// A row with what the rows of the chunks beside it met, where they have looked of late.
+struct WideRow {
+    const TracedRow &row, *beside;  // `beside` stands between those of its neighbours, or is null
+
+    // The row of a pixel, whose number becomes that within it; null if nothing is known of it.
+    const TracedRow* at(int32_t y, int32_t& pixel) const {
+        if (pixel >= 0 && pixel < CHUNK) return &row;
+        if (beside == nullptr) return nullptr;
+        const TracedRow* other = pixel < 0 ? beside - 1 : beside + 1;
+        pixel += pixel < 0 ? CHUNK : -CHUNK;
+        return other->y >= y - 2 ? other : nullptr;
+    }
+};
+
+// Adds what the pixels around a place in a row met, the nearer the more. Of every four that look
+// one after another each has a quarter of the lobe.
 void add_around(const Chunk& c, int32_t i, int32_t step, int32_t reach, float share,
-                const TracedRow& row, vec3& sum, float& weight) {
+                const WideRow& row, Met& met) {
     const int32_t left = i - i % step;
-    for (int32_t other = left - step; other <= left + 2 * step; other += step) {
-        const int32_t away = other < i ? i - other : other - i;
-        if (away >= reach || !shares(c, i, row, other)) continue;
-        const float part = share * static_cast<float>(reach - away);
-        sum = sum + vector_at(row.sum, other) * part;
-        weight += row.weight[other] * part;
+    for (int32_t place = left - step; place <= left + 2 * step; place += step) {
+        const int32_t away = place < i ? i - place : place - i;
+        if (away >= reach) continue;
+        int32_t other = place;
+        const TracedRow* of = row.at(c.y, other);
+        if (of == nullptr || !shares(c, i, *of, other)) continue;
+        met.add(*of, other, share * static_cast<float>(reach - away));
+    }
+}
+
+// What the pixels around one of a row met, or one that lies anywhere by itself. `beside` is as in
+// `WideRow`, null for the latter; `last` is the nearest row above that has rays, if it is near.
+Met met_around(const Chunk& c, const TracedPixels& pixels, const TracedRow* beside,
+               const TracedRow* last, int32_t i) {
+    Met met;
+    const int32_t step = pixels.step[i];
+    if (beside == nullptr) {
+        if (shares(c, i, pixels.row, i)) met.add(pixels.row, i, 1.0f);
+        return met;
+    }
+    if (step > 2) {
+        // A row with rays knows already what those above it met.
+        const TracedRow* row = (c.y & 1) != 0 ? last : &pixels.row;
+        // Where nothing is known of the chunk beside, those on one side alone would tell.
+        const int32_t reach = last == nullptr ? step + 1 : 2 * step;
+        if (row != nullptr) add_around(c, i, step, reach, 1.0f, {*row, beside}, met);
+        if (met.weight > 0.0f) return met;
+        for (int32_t other = i - BESIDE; other <= i + BESIDE; other++) {
+            if (shares(c, i, pixels.row, other)) met.add(pixels.row, other, 1.0f);
+            if (last != nullptr && shares(c, i, *last, other)) met.add(*last, other, 1.0f);
+        }
+        return met;
+    }
+    const float rough = c.roughness[i] * c.roughness[i];
+    const bool soft = rough > pixels.angle[i] || pixels.angle[i] > CURVED;
+    const int32_t reach = step > 1 ? 2 * step : soft ? 2 : 1;
+    add_around(c, i, step, reach, 1.0f, {pixels.row, nullptr}, met);
+    if (i % step != 0) {
+        add_around(c, i, 1, 1, static_cast<float>(reach), {pixels.row, nullptr}, met);
+    }
+    if (reach > 1 && last != nullptr) {
+        add_around(c, i, step, reach, last->y == c.y - 1 ? 1.0f : 0.5f, {*last, nullptr}, met);
+    }
+    return met;
+}
+
+// Adds to what few pixels met what those above them did, less and less of it from row to row.
+void add_rows_above(const Chunk& c, const TracedRow& last, TracedPixels& pixels) {
+    for (int32_t i = 0; i < c.count; i++) {
+        if (pixels.ray_count[i] == 0 || pixels.step[i] <= 2 || !shares(c, i, last, i)) continue;
+        const vec3 sum = vector_at(pixels.row.sum, i);
+        put(pixels.row.sum, i, sum + vector_at(last.sum, i) * KEPT_SHARE);
+        pixels.row.weight[i] += KEPT_SHARE * last.weight[i];
+    }
+}
+
+// Takes over what pixels around a rough point at an edge mirror by rays, where it has such.
+void take_from_pixels(const RoughBand& rough, const Fragment* fragments, Chunk& c,
+                      TracedPixels& pixels) {
+    for (int32_t i = 0; i < c.count; i++) {
+        if (!(pixels.share[i] > 0.0f) || c.roughness[i] < ROUGH) continue;
+        vec3 sum(0.0f, 0.0f, 0.0f);
+        float count = 0.0f;
+        for (int32_t k = 0; k < 9; k++) {
+            const int32_t x = fragments[i].pixel_x + k % 3 - 1;
+            const int32_t y = fragments[i].pixel_y + k / 3 - 1;
+            if (x < 0 || x >= rough.width || !rough.has_row(y)) continue;
+            const size_t at = rough.place(x, y);
+            if (rough.ids[at] != c.id[i]) continue;
+            if (!(dot(rough.normals[at], vector_at(c.normal, i)) > ALIKE)) continue;
+            sum = sum + rough.mirrored[at];
+            count += 1.0f;
+        }
+        if (!(count > 0.0f)) continue;
+        put(c.mirrored, i, sum * (1.0f / count));
+        pixels.share[i] = 0.0f;
     }
 }
 
 }  // namespace
 
-void trace_reflections(const Shading& s, Chunk& c, TracedRow* before) {
+void trace_reflections(const Shading& s, Chunk& c, const TracedPlaces& places) {
     TracedPixels pixels;
+    TracedRow* before = places.before;
     if (!choose_pixels(c, before != nullptr, pixels)) return;
-    count_rays(c, before, pixels);
-    for (int32_t number = 0; number < ROUGH_RAYS; number++) trace_rays(s, c, number, pixels);
+    if (before == nullptr && places.rough != nullptr) {
+        take_from_pixels(*places.rough, places.fragments, c, pixels);
+    }
     const bool follows = before != nullptr && (before->y == c.y - 1 || before->y == c.y - 2);
+    const TracedRow* last = follows ? before : nullptr;
+    count_rays(c, before != nullptr, last, pixels);
+    const int32_t most = *std::max_element(pixels.ray_count, pixels.ray_count + c.count);
+    for (int32_t number = 0; number < most; number++) trace_rays(s, c, number, pixels);
+    const bool looks = before != nullptr && (c.y & 1) == 0;
+    if (looks && last != nullptr) add_rows_above(c, *last, pixels);
     for (int32_t i = 0; i < c.count; i++) {
         if (!(pixels.share[i] > 0.0f)) continue;
-        const int32_t step = pixels.step[i];
-        const bool soft =
-            c.roughness[i] * c.roughness[i] > pixels.angle[i] || pixels.angle[i] > CURVED;
-        const int32_t reach = before == nullptr ? 1 : step > 1 ? 2 * step : soft ? 2 : 1;
-        vec3 sum(0.0f, 0.0f, 0.0f);
-        float weight = 0.0f;
-        add_around(c, i, step, reach, 1.0f, pixels.row, sum, weight);
-        if (i % step != 0)
-            add_around(c, i, 1, 1, static_cast<float>(reach), pixels.row, sum, weight);
-        if (reach > 1 && follows) {
-            add_around(c, i, step, reach, before->y == c.y - 1 ? 1.0f : 0.5f, *before, sum, weight);
-        }
-        if (!(weight > 0.0f)) continue;
-        sum = sum * (1.0f / weight);
-        put(c.mirrored, i, mix(vector_at(c.mirrored, i), sum, pixels.share[i]));
+        const Met met = met_around(c, pixels, before, last, i);
+        if (!(met.weight > 0.0f)) continue;
+        const vec3 mean = met.sum * (1.0f / met.weight);
+        put(c.mirrored, i, mix(vector_at(c.mirrored, i), mean, pixels.share[i]));
+        if (before == nullptr || places.rough == nullptr || c.roughness[i] < ROUGH) continue;
+        const size_t at = places.rough->place(c.x + i, c.y);
+        places.rough->ids[at] = c.id[i];
+        places.rough->normals[at] = vector_at(c.normal, i);
+        places.rough->mirrored[at] = vector_at(c.mirrored, i);
     }
-    if (before == nullptr || (c.y & 1) != 0) return;
+    if (!looks) return;
     *before = pixels.row;
     before->y = c.y;
 }
@@ -405,7 +576,7 @@ Vec3x8 trace_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, i8 w
         if (k == group + 4) continue;
         const vec3 begin(point.x[k], point.y[k], point.z[k]);
         const vec3 along(ray.x[k], ray.y[k], ray.z[k]);
-        const SceneHit met = closest_hit(*s.light->traced, begin, along);
+        const SceneHit met = closest_hit(*s.light->traced, begin, along, ENDLESS);
         if (!is_drawn(met)) continue;
         set_hit(met, begin, along, distance[k], USUAL_ANGLE, hits, count);
         groups[count++] = group;
