@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.errors import SailenvError
 from sailenv_ros.native.array_kernel import sum_steps
 
 __all__ = ["LEVEL", "QUICK_LEVEL", "coded", "decoded", "rounded"]
@@ -75,7 +74,7 @@ def decoded(data: NDArray[np.uint8]) -> NDArray[Any]:
         kind, shape = _told(told)
         planes = np.frombuffer(_inflated(packed, math.prod(shape) * kind.itemsize), np.uint8)
         return sum_steps(planes, _rows(shape), kind).reshape(shape)
-    except (ValueError, TypeError, zlib.error, SailenvError) as problem:
+    except (ValueError, TypeError, zlib.error) as problem:
         raise ValueError(f"it is no coded array ({problem})") from problem
 
 
@@ -83,7 +82,7 @@ def _told(line: bytes) -> tuple[np.dtype[Any], tuple[int, ...]]:
     """Return the type and the shape that a line tells of."""
     name, given = json.loads(line)
     kind, shape = np.dtype(name), tuple(operator.index(size) for size in given)
-    if kind.kind not in "fiub" or min(shape, default=0) < 0:
+    if kind.kind not in "fiub" or kind.itemsize not in _INTEGERS or min(shape, default=0) < 0:
         raise ValueError(f"{kind} of shape {shape} are no numbers")
     if math.prod(shape) * kind.itemsize > MOST_BYTES:
         raise ValueError(f"shape {shape} is more than {MOST_BYTES // 2**20} MiB")
