@@ -244,6 +244,8 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
         const i8 smooth = (roughness < ROUGHEST) & ~load(c.empty + i);
         store(pixels.share + i, splat(0.0f));
         if (!any(smooth)) continue;
+        // Those beside look at them, whatever comes of these.
+        pixels.rays.set(i, mirrored_ray(c, i));
         const Vec3x8 ray = c.ray.at(i);
         const f8 cosine = abs8(dot(c.normal.at(i), ray) * inverse_length(ray)) + 1e-4f;
         const f8 metallic = load(c.metallic + i);
@@ -263,7 +265,6 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
         const i8 chosen = smooth & ~uneven;
         store(pixels.share + i, chosen ? share : splat(0.0f));
         store(pixels.mirrored + i, mirrored);
-        pixels.rays.set(i, mirrored_ray(c, i));
         some |= any(chosen & (share > 0.0f));
     }
     if (!some) return false;
