@@ -103,10 +103,8 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     f8 facing = dot(normal, view) * unit;
     normal = normal * (facing < 0.0f ? -unit : unit);
     facing = abs8(facing);
-    // Schlick's term for a refractive index of 1.5.
-    const f8 grazing = 1.0f - min8(facing, splat(1.0f));
-    const f8 g2 = grazing * grazing;
-    const f8 fresnel = 0.04f + 0.96f * (g2 * g2 * grazing);
+    // For a refractive index of 1.5.
+    const f8 fresnel = 0.04f + 0.96f * schlick_share(min8(facing, splat(1.0f)));
     const f8 rest = 1.0f - fresnel;
     const Vec3x8 point = begin + ray * depth;
     const Vec3x8 direction = 2.0f * facing * normal - view;

@@ -98,6 +98,11 @@ void shine_as_outside(const Shading& s, Chunk& c) {
     }
 }
 
+// Whether rays tell what surfaces mirror.
+bool traces_reflections(const Shading& s) {
+    return s.outputs->radiance != nullptr && s.light->reflecting && s.light->traced != nullptr;
+}
+
 // The light of what was gathered.
 void light_chunk(const Shading& s, Chunk& c, const TracedPlaces& places) {
     if (!c.hit) {
@@ -124,7 +129,7 @@ void light_chunk(const Shading& s, Chunk& c, const TracedPlaces& places) {
         light_from_sky(s, c);
     }
     mirror_surroundings(s, c);
-    if (s.light->reflecting && s.light->traced != nullptr) trace_reflections(s, c, places);
+    if (traces_reflections(s)) trace_reflections(s, c, places);
     reflect_to_eye(s, c);
 }
 
@@ -192,10 +197,16 @@ Vec3x8 rays_of_faces(const Shading& s, f8 x, f8 y, i8 faces) {
 
 void shade_band(const Shading& s, int32_t first_row, int32_t last_row, RoughBand* rough) {
     Chunk chunk;
-    if (rough != nullptr) rough->begin(first_row, last_row, s.width);
     const int32_t columns = static_cast<int32_t>((s.width + CHUNK - 1) / CHUNK);
     // One more on either side, of which nothing is known.
-    std::vector<TracedRow> before(static_cast<size_t>(columns) + 2);
+    std::vector<TracedRow> before;
+    TracedPlaces places{};
+    const bool traced = traces_reflections(s);
+    if (traced) {
+        before.resize(static_cast<size_t>(columns) + 2);
+        places.rough = rough;
+        if (rough != nullptr) rough->begin(first_row, last_row, s.width);
+    }
     for (int32_t y = first_row; y < last_row; y++) {
         for (int32_t column = 0; column < columns; column++) {
             chunk.x = column * CHUNK;
@@ -203,7 +214,8 @@ void shade_band(const Shading& s, int32_t first_row, int32_t last_row, RoughBand
             chunk.count = static_cast<int32_t>(rest < CHUNK ? rest : CHUNK);
             chunk.padded = (chunk.count + 7) & ~7;
             chunk.y = y;
-            shade_chunk(s, chunk, {&before[static_cast<size_t>(column) + 1], rough, nullptr});
+            if (traced) places.before = &before[static_cast<size_t>(column) + 1];
+            shade_chunk(s, chunk, places);
         }
     }
 }

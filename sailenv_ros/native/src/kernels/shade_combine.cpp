@@ -25,8 +25,7 @@ LANES_INLINE void add_reflected(const Surface8& s, Direction towards, Power powe
     const f8 smith = nl * sqrt8(s.nv * s.nv * rest + s.a2) + s.nv * sqrt8(nl * nl * rest + s.a2);
     // Distribution times visibility.
     const f8 lobe = 0.5f * s.a2 / (PI * spread * spread * smith);
-    const f8 grazing = 1.0f - vh, g2 = grazing * grazing, g5 = g2 * g2 * grazing;
-    const Vec3x8 fresnel = s.f0 + (1.0f - s.f0) * g5;
+    const Vec3x8 fresnel = s.f0 + (1.0f - s.f0) * schlick_share(vh);
     sum = sum + power * nl * (s.diffuse * (1.0f - fresnel) * (1.0f / PI) + fresnel * lobe);
 }
 

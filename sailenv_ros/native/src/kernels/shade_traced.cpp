@@ -24,30 +24,33 @@ vec3 unit(vec3 a) { return a * (1.0f / std::sqrt(dot(a, a))); }
 
 constexpr float BEGIN_M = 5e-4f;  // a point lies that far from its surface, at most
 
-// From where on a surface mirrors pictures of the room, more and more, but for what stands near,
-// and from where on also in its place.
+// Roughness: up to SMOOTH rays tell all that is mirrored, from ROUGH on what stands near alone, up
+// to ROUGHER all of that, and from ROUGHEST on nothing. The rest is as pictures of the room have
+// it.
 constexpr float SMOOTH = 0.22f, ROUGH = 0.36f, ROUGHER = 0.42f, ROUGHEST = 0.52f;
-// Few rays do not find what is bright and small, as pictures do; these do not know what stands
-// near: from where on less and less of a ray counts, and none [m].
+// What is nearer than NEAR_M stands near, and what is farther than FAR_M does not: there few rays
+// would not find what is bright and small, as pictures do.
 constexpr float NEAR_M = 0.3f, FAR_M = 0.8f;
-// The same of the angle between the mirrored rays of neighbouring pixels [rad].
+// Angle between the mirrored rays of neighbouring pixels, from where on pictures count more and
+// more, and alone [rad].
 constexpr float FLAT = 0.05f, BENT = 0.15f;
 // Share that is mirrored of all light that is sent back, where light is even: from where on rays
 // are worth it, and several are.
 constexpr float LEAST_SHARE = 0.25f, WHOLE_SHARE = 0.4f, LARGE_SHARE = 0.6f;
 // By how much more than these it is of rough surfaces.
 constexpr float MORE_OF_ROUGH = 0.2f;
-// Less than that is mirrored by what sends back so much otherwise, seen by a cosine of so much: at
-// most 0.088 of the light.
+// A rough surface that is no metal and sends back more than BRIGHT otherwise, seen by a cosine of
+// more than STEEP: it mirrors at most 0.088 of the light, which is too small a share.
 constexpr float BRIGHT = 0.12f, STEEP = 0.45f;
 // Of samples at edges, which lie anywhere: angle between the mirrored rays of pixels [rad].
 constexpr float USUAL_ANGLE = 0.004f;
 
-// Of a rough surface some pixels of every second row look along rays of the lobe, the fewer the
+// Where the lobe is wide, some pixels of every second row look along rays of it, the fewer the
 // wider it is; those around share what these meet. Where much is mirrored sharply, each pixel has
 // its own.
-constexpr int32_t LOBE = 16, ROUGH_RAYS = 4, OWN_RAYS = 2;
-// Rays of one above which none of the same surface has looked, and what counts of a row above.
+constexpr int32_t LOBE = 16, SHARED_RAYS = 4, OWN_RAYS = 2;
+// Rays of a pixel of a rough surface above which none of that surface has looked, and share that
+// counts of what the row above met.
 constexpr int32_t FIRST_RAYS = 8;
 constexpr float KEPT_SHARE = 0.87f;
 // Pixels on either side that do for one where those that should look are of something else.
@@ -250,8 +253,9 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
         const f8 cosine = abs8(dot(c.normal.at(i), ray) * inverse_length(ray)) + 1e-4f;
         const f8 metallic = load(c.metallic + i);
         const f8 diffuse = luminance(c.base.at(i)) * (1.0f - metallic);
-        const i8 bright = (roughness >= ROUGH) & (diffuse > BRIGHT) & (cosine > STEEP);
-        if (!any(smooth & ~(bright & (metallic < 0.05f)))) continue;
+        const i8 bright =
+            (roughness >= ROUGH) & (metallic == 0.0f) & (diffuse > BRIGHT) & (cosine > STEEP);
+        if (!any(smooth & ~bright)) continue;
         const Mirroring term = mirroring(roughness, cosine);
         const Vec3x8 f0 = reflectance_head_on(c.base.at(i), metallic);
         const f8 sharp = luminance(f0 * term.x + term.y);
@@ -326,10 +330,11 @@ void count_rays(const Chunk& c, bool of_row, const TracedRow* last, TracedPixels
         pixels.ray_count[i] = much && pixels.angle[i] > CURVED ? OWN_RAYS : 1;
         if (!of_row || pixels.step[i] == 1) continue;
         const bool flat = pixels.angle[i] < FLAT_PLANE || pixels.step[i] > 2;
-        if (much && flat && !rough)
-            pixels.ray_count[i] = ROUGH_RAYS;
-        else if (much || rough || pixels.step[i] > 2)
+        if (much && flat && !rough) {
+            pixels.ray_count[i] = SHARED_RAYS;
+        } else if (much || rough || pixels.step[i] > 2) {
             pixels.ray_count[i] = OWN_RAYS;
+        }
         if (neighbours_do(c, pixels, above, i) ||
             (pixels.step[i] > 2 && one_beside_does(c, pixels, above, i))) {
             pixels.ray_count[i] = 0;
@@ -380,8 +385,8 @@ float lobe_weight(const Chunk& c, int32_t i, vec3 ray) {
     const float square = c.roughness[i] * c.roughness[i], a2 = square * square;
     const float seen = 2.0f * nl / (nl + std::sqrt(a2 + (1.0f - a2) * nl * nl));
     const float base = luminance(vector_at(c.base, i));
-    const float f0 = 0.04f + (base - 0.04f) * c.metallic[i], away = 1.0f - vh;
-    const float away2 = away * away, fresnel = f0 + (1.0f - f0) * away2 * away2 * away;
+    const float f0 = 0.04f + (base - 0.04f) * c.metallic[i];
+    const float fresnel = f0 + (1.0f - f0) * schlick_share(vh);
     return fresnel * seen * vh / max(dot(normal, facet), 1e-3f);
 }
 
@@ -449,8 +454,7 @@ struct WideRow {
     }
 };
 
-// Adds what the pixels around a place in a row met, the nearer the more. Of every four that look
-// one after another each has a quarter of the lobe.
+// Adds what the pixels around a place in a row met, the nearer the more.
 void add_around(const Chunk& c, int32_t i, int32_t step, int32_t reach, float share,
                 const WideRow& row, Met& met) {
     const int32_t left = i - i % step;
