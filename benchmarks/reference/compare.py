@@ -55,7 +55,7 @@ RENDERERS: dict[str, Callable[[], RenderBackend]] = {"native": NativeRenderer, "
 
 VIEWS = Path(__file__).with_name("views.yaml")
 
-MEANS = ("ssim", "psnr_db", "flip", "stops", "ssim_halves")
+MEANS = ("ssim", "psnr_db", "flip", "stops", "ssim_halves", "flip_halves")
 
 Picture = NDArray[np.uint8]
 Row = dict[str, Any]
@@ -263,7 +263,8 @@ def _measured(
         row.update(figures[f"{row['view']}.matched"])
         plain = figures[f"{row['view']}.plain"]
         row.update({f"{key}_unmatched": value for key, value in plain.items()})
-        row["ssim_halves"] = figures[f"{row['view']}.halves"]["ssim"]
+        for key in ("ssim", "flip"):
+            row[f"{key}_halves"] = figures[f"{row['view']}.halves"][key]
     save_contact_sheet(output / f"{scene}.png", _labelled(tiles, rows), columns=3)
     return rows
 
@@ -288,13 +289,15 @@ def _save(file: Path, picture: Picture) -> None:
 
 def _show(rows: list[Row], output: Path) -> None:
     print(
-        f"{'':22}{'SSIM':>8}{'PSNR':>8}{'FLIP':>8}{'stops':>8}{'halves':>8}{'things':>8}"
+        f"{'':22}{'SSIM':>8}{'PSNR':>8}{'FLIP':>8}{'stops':>8}{'halves: SSIM FLIP':>18}"
+        f"{'things':>8}"
         "   as it is: SSIM PSNR"
     )
     for row in rows:
         print(
             f"{row['scene'] + '/' + row['view']:22}{row['ssim']:8.3f}{row['psnr_db']:8.1f}"
-            f"{row['flip']:8.3f}{row['stops']:+8.2f}{row['ssim_halves']:8.3f}"
+            f"{row['flip']:8.3f}{row['stops']:+8.2f}{row['ssim_halves']:12.3f}"
+            f"{row['flip_halves']:6.3f}"
             f"{share_near(row['objects'], NEAR_DELTA_E):8.0%}"
             f"{row['ssim_unmatched']:18.3f}{row['psnr_db_unmatched']:5.1f}"
         )
@@ -303,12 +306,13 @@ def _show(rows: list[Row], output: Path) -> None:
         lowest = min(row["ssim"] for row in rows)
         print(
             f"{'mean':22}{mean['ssim']:8.3f}{mean['psnr_db']:8.1f}{mean['flip']:8.3f}"
-            f"{mean['stops']:+8.2f}{mean['ssim_halves']:8.3f}"
+            f"{mean['stops']:+8.2f}{mean['ssim_halves']:12.3f}{mean['flip_halves']:6.3f}"
         )
         print(f"{'lowest SSIM':22}{lowest:8.3f}")
-        lost = np.mean([row["lost"] for row in rows], axis=0)
-        parts = ", ".join(f"{name} {part:.3f}" for name, part in zip(REGIONS, lost, strict=True))
-        print(f"of 1 - SSIM: {parts}")
+        for label, key in (("1 - SSIM", "lost"), ("FLIP", "flip_lost")):
+            lost = np.mean([row[key] for row in rows], axis=0)
+            parts = (f"{name} {part:.3f}" for name, part in zip(REGIONS, lost, strict=True))
+            print(f"of {label}: {', '.join(parts)}")
         for line in lines_on_objects(rows):
             print(line)
     output.mkdir(parents=True, exist_ok=True)

@@ -13,7 +13,7 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
-__all__ = ["register"]
+__all__ = ["register", "textured"]
 
 
 class LitSurface(mi.BSDF):  # type: ignore[misc,name-defined]
@@ -22,7 +22,7 @@ class LitSurface(mi.BSDF):  # type: ignore[misc,name-defined]
     def __init__(self, props: Any) -> None:
         mi.BSDF.__init__(self, props)
         self.base, self.metallic, self.roughness = (
-            _texture(props[name]) for name in ("base_color", "metallic", "roughness")
+            textured(props[name]) for name in ("base_color", "metallic", "roughness")
         )
         flags = mi.BSDFFlags
         sides = flags.FrontSide | flags.BackSide | flags.SpatiallyVarying
@@ -126,7 +126,8 @@ class _Plain:
         return self.colour.x
 
 
-def _texture(given: Any) -> Any:
+def textured(given: Any) -> Any:
+    """Return a texture as it is, a colour as one that is the same everywhere."""
     return given if hasattr(given, "eval_1") else _Plain(given)
 
 

@@ -59,7 +59,8 @@ def measured(
 ) -> dict[str, Any]:
     """Measure one pair; SSIM with the Gaussian window of its paper, mean over the channels.
 
-    ``lost`` is the share of 1 - SSIM that comes from the pixels of each region, by its number.
+    ``lost`` and ``flip_lost`` are the parts of 1 - SSIM and of FLIP that come from the pixels of
+    each region, by its number.
     """
     similarity, similarities = structural_similarity(
         reference,
@@ -72,14 +73,20 @@ def measured(
         full=True,
     )
     first, second = (image.astype(np.float32) / 255.0 for image in (reference, ours))
-    _, flip, _ = flip_evaluator.evaluate(first, second, "LDR", applyMagma=False)
-    lost = (1.0 - similarities.mean(axis=-1)) / similarities[..., 0].size
+    flips, flip, _ = flip_evaluator.evaluate(first, second, "LDR", applyMagma=False)
+    lost = 1.0 - similarities.mean(axis=-1)
     return {
-        "lost": [] if regions is None else np.bincount(regions.ravel(), lost.ravel(), 4).tolist(),
+        "lost": [] if regions is None else _by_region(lost, regions),
+        "flip_lost": [] if regions is None else _by_region(np.asarray(flips)[..., 0], regions),
         "ssim": float(similarity),
         "psnr_db": float(peak_signal_noise_ratio(reference, ours, data_range=255)),
         "flip": float(flip),
     }
+
+
+def _by_region(map_: NDArray[Any], regions: NDArray[np.uint8]) -> list[float]:
+    """Return the parts of a map's mean by region; there are four."""
+    return [float(part) for part in np.bincount(regions.ravel(), map_.ravel(), 4) / map_.size]
 
 
 def main() -> None:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from benchmarks.reference.parts import Parts, ply_bytes
 from benchmarks.reference.surfaces import bsdf, emitter
+from sailenv_ros.render.scene.flat_mirrors import material_shown
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Material, Mesh
@@ -194,14 +195,15 @@ _Piece = tuple[Mesh, Floats, tuple[float, float, float]]
 
 
 def _pieces_by_material(snapshot: WorldSnapshot) -> list[tuple[Material, list[_Piece]]]:
-    grouped: dict[tuple[int, Vector3], tuple[Material, list[_Piece]]] = {}
+    grouped: dict[tuple[int, bool, Vector3], tuple[Material, list[_Piece]]] = {}
     contents = snapshot.contents
     for drawn, pose in zip(contents.instances, snapshot.world_from_body, strict=True):
         power = drawn.lamp_power(contents.lights)
         for part in drawn.model.parts:
             lit = power if any(part.material.glow) else (0.0, 0.0, 0.0)
-            key = id(part.material), lit
-            pieces = grouped.setdefault(key, (_lit(part.material, lit), []))[1]
+            shown = material_shown(part, drawn.instance.category)
+            key = id(part.material), shown is part.material, lit
+            pieces = grouped.setdefault(key, (_lit(shown, lit), []))[1]
             pieces.append((part.mesh, pose, drawn.scale))
     return list(grouped.values())
 

@@ -20,16 +20,19 @@ __all__ = ["bsdf", "emitter"]
 LEAST_ROUGHNESS = 0.045
 """The renderer's own limit (textures.glsl)."""
 
+LEAST_CLOTH = 0.5
+"""See-through things as rough as this are cloth, and mirror nothing."""
+
 Dict = dict[str, Any]
 
 
 def bsdf(material: Material, parts: Parts) -> Dict:
     """Describe how a material reflects; seen from behind it looks alike.
 
-    What is see-through (``blend``) is clear glass: each of its faces is a thin pane.
+    What is see-through (``blend``) is as the renderer has it (see_through.py).
     """
     if material.alpha == "blend":
-        return {"type": "thindielectric", "int_ior": 1.5, "ext_ior": 1.0}
+        return _see_through(material, parts)
     inner: Dict = {
         "type": "sailenv_surface",
         "base_color": _base_colour(material, parts),
@@ -53,6 +56,27 @@ def emitter(material: Material, parts: Parts) -> Dict | None:
         return {"type": "area", "radiance": _rgb_value(glow)}
     pattern = LINEAR_OF_SRGB8[material.base_colour_texture[..., :3]] * glow
     return {"type": "area", "radiance": _bitmap(pattern.astype(np.float32), parts, raw=True)}
+
+
+def _see_through(material: Material, parts: Parts) -> Dict:
+    """Describe a face; a ray meets two of a body, which together cover and tint as it says.
+
+    Of what has two sides each is a sheet. A texture's opacity is its mean.
+    """
+    red, green, blue, opacity = (float(channel) for channel in material.base_colour)
+    if material.base_colour_texture is not None:
+        opacity *= float(material.base_colour_texture[..., 3].mean()) / 255.0
+    colour = np.array([red, green, blue])
+    hue = colour / max(float(colour.max()), 1e-3)
+    part = 1.0 if material.double_sided else 0.5
+    faces = 2.0 if material.double_sided else 1.0
+    return {
+        "type": "sailenv_see_through",
+        "base_color": _base_colour(material, parts),
+        "tint": _rgb_value((1.0 + opacity * (hue - 1.0)) ** part),
+        "opacity": _rgb_value(np.full(3, 1.0 - (1.0 - min(opacity, 1.0)) ** part)),
+        "faces": _rgb_value(np.full(3, faces if material.roughness < LEAST_CLOTH else 0.0)),
+    }
 
 
 def _base_colour(material: Material, parts: Parts) -> Dict:

@@ -26,6 +26,9 @@ GUIDE_PASSES, GUIDE_SEED = 8, 100
 """Passes and seed of the pictures that guide the denoiser, enough to be free of noise: with 16
 samples the denoiser did not trust them, and blurred edges and textures."""
 
+MOSTLY_CLEAR = 0.2
+"""Faces of a lower opacity do not guide the denoiser: what lies behind them does."""
+
 _GUIDES = {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal"}
 
 Dict = dict[str, Any]
@@ -50,6 +53,7 @@ import pyoidn  # noqa: E402
 sys.path.insert(0, str(Path(__file__).parent))
 import lit_surface  # noqa: E402
 import reference_lamps as lamps  # noqa: E402
+import see_through  # noqa: E402
 
 
 def loaded(description: Any, parts: Path) -> Any:
@@ -66,12 +70,16 @@ def loaded(description: Any, parts: Path) -> Any:
     return made
 
 
-def traced(scene: Any, sensor: Any, samples: int) -> dict[str, Image]:
-    """Trace one view; the two halves of its samples tell how noisy it is."""
+def traced(scene: Any, solid: Any, sensor: Any, samples: int) -> dict[str, Image]:
+    """Trace one view; the two halves of its samples tell how noisy it is.
+
+    What guides the denoiser is seen in `solid`, the scene without its glass: it would blur what
+    lies behind.
+    """
     seen = mi.load_dict(_GUIDES)
     guides = np.mean(
         [
-            _shot(scene, sensor, seen, PASS_SAMPLES, GUIDE_SEED + number)
+            _shot(solid, sensor, seen, PASS_SAMPLES, GUIDE_SEED + number)
             for number in range(GUIDE_PASSES)
         ],
         axis=0,
@@ -92,6 +100,18 @@ def traced(scene: Any, sensor: Any, samples: int) -> dict[str, Image]:
         "noise": _noise(first, second),
         "noise_denoised": _noise(clean_first, clean_second),
     }
+
+
+def without_glass(scene: Dict) -> Dict:
+    """Return a scene without what is mostly looked through."""
+    return {name: part for name, part in scene.items() if not _is_clear(part)}
+
+
+def _is_clear(part: Any) -> bool:
+    surface = part.get("bsdf", {}) if isinstance(part, dict) else {}
+    if surface.get("type") != "sailenv_see_through":
+        return False
+    return max(surface["opacity"]["value"]) < MOSTLY_CLEAR
 
 
 def _shot(scene: Any, sensor: Any, integrator: Any, samples: int, seed: int) -> Image:
@@ -121,13 +141,15 @@ def run(job: Dict) -> None:
     """Trace what is wanted of one job."""
     lamps.register()
     lit_surface.register()
+    see_through.register()
     parts = Path(job["parts"])
     began = time.monotonic()
     scene = mi.load_dict(loaded(job["scene"], parts))
+    solid = mi.load_dict(loaded(without_glass(job["scene"]), parts))
     print(f"{job['name']}: loaded in {time.monotonic() - began:.1f} s", flush=True)
     for view in job["views"]:
         began = time.monotonic()
-        images = traced(scene, mi.load_dict(loaded(view["sensor"], parts)), job["samples"])
+        images = traced(scene, solid, mi.load_dict(loaded(view["sensor"], parts)), job["samples"])
         seconds = time.monotonic() - began
         target = Path(view["output"])
         part = target.with_suffix(".part.npz")

@@ -25,7 +25,7 @@ __all__ = ["HOME", "ToolMissing", "Traced", "missing_views", "run_tool", "traced
 HERE = Path(__file__).resolve().parent
 HOME = cache_folder() / "reference"
 
-METHOD = 2
+METHOD = 3
 """Of `trace.py`: another number makes all traced pictures stale."""
 
 _ENVIRONMENT_S = 7200.0

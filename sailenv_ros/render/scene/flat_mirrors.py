@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose
-from sailenv_ros.types.model import Model
+from sailenv_ros.types.model import Material, Model, ModelPart
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot
 
-__all__ = ["NEAR_PLANE_M", "FlatMirrors", "SeenMirror", "Window"]
+__all__ = ["NEAR_PLANE_M", "FlatMirrors", "SeenMirror", "Window", "material_shown"]
 
 Window: TypeAlias = tuple[slice, slice]
 """Rows and columns of a picture."""
@@ -183,20 +183,34 @@ class FlatMirrors:
 def _faces(model: Model) -> Iterator[tuple[_Face, bool]]:
     """Find flat metal; True where it is polished."""
     for part in model.parts:
-        look, points = part.material, part.mesh.positions
-        rough = look.metallic_roughness_texture is not None or look.normal_texture is not None
-        if look.alpha != "opaque" or look.metallic < LEAST_METALLIC or rough or not len(points):
-            continue
-        low, high = points.min(axis=0).astype(np.float64), points.max(axis=0).astype(np.float64)
-        size = high - low
-        thin, short, _ = np.argsort(size, kind="stable")
-        if size[short] < LEAST_SIDE_M or size[thin] > FLAT * size[short]:
-            continue
-        at = points[:, thin]
-        if not ((at - low[thin] < 1e-3) | (high[thin] - at < 1e-3)).all():
-            continue
-        tint = np.asarray(look.base_colour[:3], np.float32)
-        yield _Face(int(thin), low, high, tint), look.roughness <= MOST_ROUGHNESS
+        face = _face(part)
+        if face is not None:
+            yield face, part.material.roughness <= MOST_ROUGHNESS
+
+
+def _face(part: ModelPart) -> _Face | None:
+    look, points = part.material, part.mesh.positions
+    rough = look.metallic_roughness_texture is not None or look.normal_texture is not None
+    if look.alpha != "opaque" or look.metallic < LEAST_METALLIC or rough or not len(points):
+        return None
+    low, high = points.min(axis=0).astype(np.float64), points.max(axis=0).astype(np.float64)
+    size = high - low
+    thin, short, _ = np.argsort(size, kind="stable")
+    if size[short] < LEAST_SIDE_M or size[thin] > FLAT * size[short]:
+        return None
+    at = points[:, thin]
+    if not ((at - low[thin] < 1e-3) | (high[thin] - at < 1e-3)).all():
+        return None
+    return _Face(int(thin), low, high, np.asarray(look.base_colour[:3], np.float32))
+
+
+def material_shown(part: ModelPart, category: str) -> Material:
+    """Return a part's material, silvered if it is the flat metal of a mirror."""
+    face = _face(part) if category == CATEGORY else None
+    if face is None:
+        return part.material
+    red, green, blue = (float(channel) for channel in _silvered(face.tint))
+    return replace(part.material, base_colour=(red, green, blue, 1.0), roughness=0.0)
 
 
 def _silvered(tint: NDArray[np.float32]) -> NDArray[np.float32]:

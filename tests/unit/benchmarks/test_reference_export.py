@@ -319,9 +319,27 @@ def test_leaves_are_cut_out_where_their_alpha_is_low(parts: Parts) -> None:
     assert stored(described["opacity"], parts)[0, :, 0].tolist() == [0, 0, 255, 255]
 
 
-def test_see_through_materials_are_panes(parts: Parts) -> None:
-    """Glass lets light through and mirrors a little."""
-    assert bsdf(Material(alpha="blend"), parts)["type"] == "thindielectric"
+@pytest.mark.parametrize(
+    ("roughness", "two_sided", "faces", "met"),
+    [(0.05, False, 1.0, 2), (0.05, True, 2.0, 1), (0.95, False, 0.0, 2)],
+)
+def test_what_is_seen_through_covers_as_the_renderer_has_it(
+    parts: Parts, roughness: float, two_sided: bool, faces: float, met: int
+) -> None:
+    """All faces that a ray meets have the material's opacity and hue; cloth mirrors nothing."""
+    glass = Material(
+        base_colour=(0.2, 0.4, 0.1, 0.36),
+        roughness=roughness,
+        alpha="blend",
+        double_sided=two_sided,
+    )
+    described = bsdf(glass, parts)
+    assert described["type"] == "sailenv_see_through"
+    assert described["base_color"]["value"] == [0.2, 0.4, 0.1]
+    assert (1.0 - described["opacity"]["value"][0]) ** met == pytest.approx(1.0 - 0.36)
+    tint = np.array(described["tint"]["value"]) ** met
+    assert tint == pytest.approx(1.0 + 0.36 * (np.array([0.5, 1.0, 0.25]) - 1.0))
+    assert described["faces"]["value"][0] == faces
 
 
 def test_what_glows_emits_its_radiance(parts: Parts) -> None:
