@@ -29,7 +29,7 @@ GLAZES = tuple(
         "#d9b9ab",
     )
 )
-CLEAR = (("#dfe8e6", 0.2), ("#9fc3b6", 0.35), ("#b98a3e", 0.45), ("#7fa0bd", 0.35))
+CLEAR = (("#dfe8e6", 0.08), ("#9fc3b6", 0.35), ("#b98a3e", 0.45), ("#7fa0bd", 0.35))
 """Colours and opacities of glass."""
 
 

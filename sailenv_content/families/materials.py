@@ -27,6 +27,7 @@ __all__ = [
     "metal",
     "paint",
     "printed",
+    "veil",
     "wood",
 ]
 
@@ -134,8 +135,8 @@ def leather(colour: str) -> PieceMaterial:
 
 
 @cache
-def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> PieceMaterial:
-    """Return clear or tinted glass."""
+def glass(colour: str = "#dfe8e6", opacity: float = 0.04) -> PieceMaterial:
+    """Return clear or tinted glass; its opacity is the share that scatters."""
     made = Material(
         name=f"glass {colour}",
         base_colour=(*colour_of(colour), opacity),
@@ -143,6 +144,15 @@ def glass(colour: str = "#dfe8e6", opacity: float = 0.18) -> PieceMaterial:
         alpha="blend",
     )
     return PieceMaterial(made, 1.0, 2500.0)
+
+
+def veil(colour: str, opacity: float) -> PieceMaterial:
+    """Return thin cloth that is seen through; its opacity is the share that threads cover."""
+    made = Material(
+        name=f"veil {colour}", base_colour=(*colour_of(colour), opacity), roughness=0.95,
+        alpha="blend",
+    )  # fmt: skip
+    return PieceMaterial(made, 1.0, 300.0)
 
 
 def printed(

@@ -44,7 +44,7 @@ def _built(b: PieceBuilder, v: Values) -> None:
         size = (0.008, 0.75, 1.4)
         at = (d / 2 - 0.04, -w / 2 + 0.4, h + 0.7)
         with b.part("screen", "shower"):
-            b.box(glass("#dfe8e6", 0.16), size, at, bevel=0.002)
+            b.box(glass(), size, at, bevel=0.002)
             b.box(v.metal, (0.02, 0.02, 1.4), (at[0], -w / 2 + 0.02, at[2]))
     drain(b, 0.0, -0.3 * w, 0.151)
     with b.frame((0.0, -w / 2 + 0.05, 0.0), 90.0):
@@ -164,7 +164,7 @@ def _shower(b: PieceBuilder, v: Values) -> None:
     b.form(ENAMEL, tray, collides="none", volume=0.01)
     tub_walls(b, (s, s, 0.1), wall=0.04, floor=0.06, slope=0.02)
     drain(b, 0.0, 0.0, 0.061)
-    pane = glass(v.tint, 0.18)
+    pane = glass(v.tint, 0.06)
     wall, edge = s / 2 - 0.02, 0.1
     mid = (h + edge) / 2
     with b.part("pane", "shower"):

@@ -124,7 +124,7 @@ FAMILY = Family(
                 "profile": Choice(_BORDEAUX, _BURGUNDY),
                 "material": Choice(
                     *(glass(c, 0.75) for c in ("#22381f", "#3a4a22", "#3b2412")),
-                    glass("#dfe4d8", 0.3),
+                    glass("#dfe4d8", 0.1),
                 ),
                 "drink": Choice(None, paint("#2a0a12", 0.1, 1000.0)),
                 "cap": Choice(paint("#b98f64", 0.9, 200.0), paint("#6e1a22", 0.4, 600.0)),
@@ -141,7 +141,7 @@ FAMILY = Family(
                 "wall": 0.001,
                 "profile": _WATER,
                 "material": Choice(
-                    glass("#dceaf0", 0.25), glass("#b9d8e2", 0.35), glass("#c3dcc0", 0.35)
+                    glass("#dceaf0", 0.1), glass("#b9d8e2", 0.35), glass("#c3dcc0", 0.35)
                 ),
                 "drink": Choice(None, _WATERS),
                 "label_at": (0.5, 0.7),
@@ -157,7 +157,7 @@ FAMILY = Family(
                 "height": Span(0.22, 0.26),
                 "profile": _LONGNECK,
                 "material": Choice(
-                    glass("#4a2a0e", 0.75), glass("#26401e", 0.7), glass("#dfe4d8", 0.3)
+                    glass("#4a2a0e", 0.75), glass("#26401e", 0.7), glass("#dfe4d8", 0.1)
                 ),
                 "drink": Choice(None, paint("#8a5a14", 0.1, 1000.0)),
                 "cap": Choice(metal("steel"), metal("#8a3b32"), metal("brass")),

@@ -12,9 +12,9 @@ from sailenv_content.families.materials import (
     WOODS,
     PieceMaterial,
     fabric,
-    glass,
     metal,
     paint,
+    veil,
 )
 from sailenv_content.families.parameters import Choice, Span, Values, Whole
 from sailenv_content.families.shaping import swept
@@ -241,9 +241,7 @@ FAMILY = Family(
             {
                 **_SHARED,
                 "rail": Choice(metal("#e6e4de"), metal("alu"), metal("#26272a")),
-                "veil": Choice(
-                    glass("#f4f1ea", 0.45), glass("#e9e4d8", 0.5), glass("#f1efec", 0.4)
-                ),
+                "veil": Choice(veil("#f4f1ea", 0.45), veil("#e9e4d8", 0.5), veil("#f1efec", 0.4)),
             },
         ),
         "panels": Style(

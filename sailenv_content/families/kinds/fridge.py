@@ -37,7 +37,7 @@ def _fruit(b: PieceBuilder, room: Box) -> None:
 
 def _cold_drawer(b: PieceBuilder, name: str, room: Box, *, frozen: bool) -> None:
     """Add a clear drawer behind a door."""
-    clear = glass("#dfe9ee", 0.35)
+    clear = glass("#dfe9ee", 0.15)
     size, middle, t = room.size, room.middle, 0.005
     with b.slide(name, "drawer", by=round(0.55 * float(size[0]), 3)):
         b.box(clear, (size[0], size[1], t), (middle[0], middle[1], room.low[2] + t / 2))
@@ -79,14 +79,14 @@ def _furnished(b: PieceBuilder, room: Box, *, shelves: int, drawers: int, prefix
         low += high
         if number < drawers - 1 or shelves:
             size = (inner.size[0], inner.size[1], 0.006)
-            b.box(glass("#cfdde2", 0.4), size, (inner.middle[0], inner.middle[1], low - 0.003))
+            b.box(glass("#cfdde2", 0.12), size, (inner.middle[0], inner.middle[1], low - 0.003))
     if not shelves:
         return
     rows = Box((*inner.low[:2], low), inner.high).rows([1.0] * shelves, 0.008)
     for number, row in enumerate(rows):
         if number:
             at = (row.middle[0], row.middle[1], row.low[2] - 0.004)
-            b.box(glass("#cfdde2", 0.4), (row.size[0], row.size[1], 0.006), at)
+            b.box(glass("#cfdde2", 0.12), (row.size[0], row.size[1], 0.006), at)
         stores(b, row.within((0.04, 0.02, 0.001), (0.04, 0.02, 0.01)), cold=True)
 
 
@@ -118,7 +118,7 @@ def _door(
             mid = (liner.low[0] - deep / 2, float(liner.middle[1]), row.low[2] + 0.003)
             b.box(LINER, size, mid, bevel=0.001)
             front = (liner.low[0] - deep + 0.003, mid[1], row.low[2] + 0.03)
-            b.box(glass("#dfe9ee", 0.4), (0.005, size[1], 0.06), front, bevel=0.001)
+            b.box(glass("#dfe9ee", 0.15), (0.005, size[1], 0.06), front, bevel=0.001)
             shelf = Box(
                 (liner.low[0] - deep, mid[1] - size[1] / 2 + 0.03, row.low[2] + 0.006),
                 (liner.low[0], mid[1] + size[1] / 2 - 0.03, row.high[2]),

@@ -175,7 +175,7 @@ _SHARED = {
     "duct": Span(0.22, 0.26),
     "body": Choice(_body("steel"), _body("#26272a"), _body("#e6e4de"), _body("copper")),
     "plate": Choice(paint("#101214", 0.06, 900.0), paint("#e9e7e2", 0.06, 900.0)),
-    "pane": Choice(glass("#cfe0dc", 0.3), glass("#23282a", 0.6)),
+    "pane": Choice(glass("#cfe0dc", 0.08), glass("#23282a", 0.6)),
     "wood": Choice(*WOODS, paint("#e9e6df")),
     "plaster": Choice(paint("#e4ded2", 0.95, 300.0), paint("#c9b9a0", 0.95, 300.0)),
     "knob": Choice(BLACK, metal("chrome")),

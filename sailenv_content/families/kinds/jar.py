@@ -16,7 +16,7 @@ from sailenv_content.procedural.forms import circle
 
 __all__ = ["FAMILY"]
 
-CLEAR = glass("#dfe8e6", 0.3)
+CLEAR = glass("#dfe8e6", 0.08)
 RUBBER = paint("#c9562e", 0.6, 1100.0)
 
 

@@ -18,7 +18,7 @@ __all__ = ["FAMILY"]
 
 BLACK = paint("#1a1b1d", 0.35, 900.0)
 STEEL = metal("steel", 700.0)
-PANE = glass("#dfe8e6", 0.22)
+PANE = glass("#dfe8e6", 0.08)
 
 
 def _toaster(b: PieceBuilder, v: Values) -> None:

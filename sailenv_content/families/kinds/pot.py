@@ -143,7 +143,7 @@ _SHARED = {
     "wall": 0.003,
     "profile": _STRAIGHT,
     "material": Choice(_STEEL, _STEEL, _COPPER, metal("alu")),
-    "cover": Choice(_STEEL, glass("#dfe8e6", 0.3)),
+    "cover": Choice(_STEEL, glass("#dfe8e6", 0.08)),
     "grip": Choice(_STEEL, _BLACK, wood("beech"), metal("brass")),
     "knob": Choice(_STEEL, _BLACK, wood("beech")),
 }

@@ -250,7 +250,7 @@ _SHARED = {
     "top": Choice(_BODIES[0], paint("#c9cccd", 0.4, 500.0)),
     "face": Choice(*_BODIES),
     "ring": Choice(metal("chrome"), paint("#e2e2df", 0.3), paint("#2b2d30", 0.25)),
-    "pane": Choice(glass("#1c2023", 0.55), glass("#dfe8e6", 0.25)),
+    "pane": Choice(glass("#1c2023", 0.55), glass("#dfe8e6", 0.08)),
     "inner": paint("#c7cacb", 0.4),
     "grip": Choice(metal("chrome"), paint("#2b2d30", 0.3), paint("#e2e2df", 0.3)),
     "knob": Choice(metal("chrome"), paint("#2b2d30", 0.3), paint("#e8e6e0", 0.3)),
