@@ -30,24 +30,26 @@ class Record:
 
     Parameters
     ----------
-    arrays : dict of str to array
-        By the names of the structure's pointers, in their order.
+    arrays : dict of str to array or None
+        By the names of the structure's pointers, in their order; None is a null pointer.
     numbers : dict of str to int or float
         The structure's numbers, which follow: int64 or double.
 
     Attributes
     ----------
     record : (1,) structured array
-    arrays : dict of str to array
+    arrays : dict of str to array or None
     """
 
-    def __init__(self, arrays: dict[str, NDArray[Any]], numbers: Mapping[str, float]) -> None:
+    def __init__(
+        self, arrays: Mapping[str, NDArray[Any] | None], numbers: Mapping[str, float]
+    ) -> None:
         fields: list[Any] = [(name, ADDRESS) for name in arrays]
         fields += [
             (name, "<f8" if isinstance(number, float) else "<i8")
             for name, number in numbers.items()
         ]
-        self.arrays = arrays
+        self.arrays: Mapping[str, Any] = arrays
         self.record: NDArray[np.void] = np.zeros(1, structure(*fields))
         for name, array in arrays.items():
             self.record[name][0] = address(array)

@@ -88,8 +88,7 @@ def find_ambient_visibility(
     surface : (H, W, 2) float32
         Depth [m] and instance id.
     known : (65536,) uint8
-        By instance id: 1 of surfaces whose light was baked, which do not darken each other; 2 of
-        those whose shadow is in that light: these and they do not either; 0 of others.
+        By instance id: 1 of surfaces whose light is known, which do not darken each other.
     lens : (1,) lens.LENS
     settings : AmbientSettings
     pattern : (16, 2, 12) float32

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.bake_types import Record
 from sailenv_ros.native.library import Kernel, checked
-from sailenv_ros.native.ray_types import RAY_LIGHT
+from sailenv_ros.native.ray_types import RAY_INSTANCE, RAY_LIGHT
 from sailenv_ros.native.relight_types import HalfMaps, MappedTexels, PatchMap
 
 __all__ = [
@@ -55,6 +55,7 @@ def gather_change(
     inside_share: float,
     most_changed: float = MOST_CHANGED,
     numbers: NDArray[np.uint32] | None = None,
+    own: NDArray[np.void] | None = None,
     threads: int,
 ) -> tuple[NDArray[np.uint8], Floats, Floats, Floats]:
     """Gather what arrives at patches from others, and straight from area lights.
@@ -77,6 +78,8 @@ def gather_change(
         Where more of the rays than this share meet a change, all of the light is gathered.
     numbers : (P,) uint32 or None
         Seeds of the patches' random numbers; None counts from 0.
+    own : (1,) RAY_INSTANCE or None
+        What the points lie on, if that was not baked: it takes light from what is near.
 
     Returns
     -------
@@ -92,7 +95,7 @@ def gather_change(
     """
     count, channels = len(positions), int(scene["channels"][0])
     rays, lights, shots = len(pattern), len(area_lights), len(shot_pattern)
-    asked: dict[str, NDArray[Any]] = {
+    asked: dict[str, NDArray[Any] | None] = {
         "positions": checked("positions", positions, np.float32, (None, 3)),
         "normals": checked("normals", normals, np.float32, (count, 3)),
         "wanted": checked("wanted", wanted, np.uint8, (count,)),
@@ -100,6 +103,7 @@ def gather_change(
         "pattern": checked("pattern", pattern, np.float32, (rays, 2)),
         "lights": checked("area lights", area_lights, RAY_LIGHT, (lights,)),
         "shot_pattern": checked("pattern of shots", shot_pattern, np.float32, (shots, 2)),
+        "own": None if own is None else checked("own", own, RAY_INSTANCE, (1,)),
     }
     counts = {"count": count, "rays": rays, "light_count": lights, "shots": shots}
     shares = {"least": least, "most_changed": most_changed, "inside_share": inside_share}

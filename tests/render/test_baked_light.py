@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sailenv_ros.rays.own_occlusion import arriving_share
 from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight, SunEdges
@@ -15,6 +16,7 @@ from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.views import LIT_VIEWS, RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.baked import SIZE, baked, chart, layer
+from tests.support.curved_meshes import bowl
 from tests.support.picture import linear
 from tests.support.tiny_scenes import (
     FORWARD,
@@ -121,6 +123,26 @@ def test_each_side_of_what_can_move_is_lit_by_its_own_place(render: Render) -> N
     left = np.sin(turn) ** 2 * (0.8 - 0.1 * y + 0.0 * z)
     wanted = np.stack([0.2 + front, 0.1 + 0.5 * front, left], axis=-1)
     np.testing.assert_allclose(got, np.maximum(wanted, 0.0) * ALBEDO, rtol=0.05, atol=0.004)
+
+
+def test_where_an_object_hides_itself_less_light_arrives(render: Render) -> None:
+    """In half a sphere a half does; between its parts light goes to and fro ."""
+    inside = model_of(bowl(), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0)
+    terms = np.zeros((1, LIGHT_TERMS, 3), np.float32)
+    terms[0, 0] = 0.8
+    even = np.zeros((1, LIGHT_TERMS), np.float32)
+    own = ObjectLight(bounced=terms, direct=even, axes=np.eye(3, dtype=np.float32))
+    pose = Pose.from_rpy_deg((3.0, 0.0, 0.0), (0.0, -90.0, 0.0))
+    scene = snapshot_of(
+        [Thing(inside, pose)], lights=(), environment=DARK, baked=baked({}, [], layer(None))
+    )
+    got = linear(render(replace(scene, object_light={1: own}), camera_at(), "rgb")["rgb"])
+    height, width = got.shape[:2]
+    seen = got[height // 3 : -height // 3, width // 3 : -width // 3].mean(axis=(0, 1))
+    share = arriving_share(np.full(3, 0.5), ALBEDO)
+    # An endless number of bounces between parts that see half of each other: 0.5 / (1 - 0.5 a).
+    np.testing.assert_allclose(share, 0.5 / (1.0 - 0.5 * ALBEDO), rtol=0.08)
+    np.testing.assert_allclose(seen, 0.8 * share * ALBEDO, rtol=0.05, atol=0.004)
 
 
 def test_what_was_moved_leaves_its_light_behind(render: Render) -> None:

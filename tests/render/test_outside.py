@@ -109,7 +109,10 @@ def test_the_room_itself_looks_as_it_did(render: Render, street: WorldSnapshot) 
 def test_it_is_bright_by_day_and_follows_the_exposure(
     render: Render, street: WorldSnapshot
 ) -> None:
-    """Blended with the room it is light, neither black nor white, at any exposure."""
+    """Blended with the room it is light, neither black nor white, at any exposure.
+
+    The panes mirror 15 % of the room, which the longest one makes nearly white.
+    """
     at_id = outside_id(street)
     for exposure in (-1.0, 1.0, 3.0):
         contents = street.contents
@@ -117,7 +120,7 @@ def test_it_is_bright_by_day_and_follows_the_exposure(
         snapshot = replace(street, contents=replace(contents, environment=environment))
         views = render(snapshot, north(), "rgb", "instance")
         mean = views["rgb"][views["instance"] == at_id].mean()
-        assert (60 if exposure < 0.0 else 110) < mean < 235, exposure
+        assert (60 if exposure < 0.0 else 110) < mean < 245, exposure
 
 
 def test_both_renderers_show_the_same(street: WorldSnapshot, render: Render) -> None:

@@ -8,11 +8,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.errors import InvalidRequest, UnknownName
-from sailenv_ros.render.picture.ambient_occlusion import (
-    BAKED_LIGHT,
-    BAKED_SHADOW,
-    ambient_visibility,
-)
+from sailenv_ros.render.picture.ambient_occlusion import ambient_visibility
 from sailenv_ros.render.picture.sensor import sensor_light
 from sailenv_ros.render.picture.tone import code_table, filmic, tone_mapped
 from sailenv_ros.render.picture.tone_map import apply_visibility, tone_map
@@ -176,7 +172,7 @@ def test_what_was_baked_is_left_alone() -> None:
     """Two baked surfaces do not darken each other; one that moves darkens both."""
     surface, intrinsics = corner()
     known = NONE_BAKED.copy()
-    known[[1, 2]] = BAKED_LIGHT
+    known[[1, 2]] = 1
     keys = {"strength": 1.0, "radius_m": 0.4}
     assert (ambient_visibility(surface, intrinsics, known=known, **keys)[0] == 255).all()
     known[1] = 0
@@ -185,22 +181,6 @@ def test_what_was_baked_is_left_alone() -> None:
     every = ambient_visibility(surface, intrinsics, known=NONE_BAKED, **keys)[0]
     np.testing.assert_array_equal(share[wall], every[wall])
     assert share[~wall].min() < 160
-
-
-def test_a_shadow_that_was_baked_is_not_drawn_again() -> None:
-    """Its owner and what was baked leave each other alone; others darken both."""
-    surface, intrinsics = corner()
-    known = NONE_BAKED.copy()
-    known[1:3] = BAKED_SHADOW, BAKED_LIGHT
-    keys = {"strength": 1.0, "radius_m": 0.4}
-    assert (ambient_visibility(surface, intrinsics, known=known, **keys)[0] == 255).all()
-    wall = surface[::2, ::2, 1] == 1
-    every = ambient_visibility(surface, intrinsics, known=NONE_BAKED, **keys)[0]
-    for which, darkened in ((1, ~wall), (2, wall)):
-        other = known.copy()
-        other[which] = 0
-        share = ambient_visibility(surface, intrinsics, known=other, **keys)[0]
-        np.testing.assert_array_equal(share[darkened], every[darkened])
 
 
 @pytest.mark.parametrize(("width", "height"), [(8, 8), (9, 11), (33, 8), (97, 61)])

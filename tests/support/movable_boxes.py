@@ -25,10 +25,13 @@ IN_THE_AIR = Pose((0.0, 0.0, 1.0))
 
 
 def room(
-    *things: tuple[Model, Pose], environment: Environment = DARK, lights: tuple[Light, ...] = ()
+    *things: tuple[Model, Pose],
+    environment: Environment = DARK,
+    lights: tuple[Light, ...] = (),
+    floor: Model = FLOOR,
 ) -> WorldSnapshot:
-    """A small dark floor that stands still, with its light, and things that can move."""
-    every = [Thing(FLOOR), *(Thing(model, pose) for model, pose in things)]
+    """A small floor, dark by itself, that stands still, with its light, and what can move."""
+    every = [Thing(floor), *(Thing(model, pose) for model, pose in things)]
     snapshot = snapshot_of(every, environment=environment, lights=lights)
     contents = snapshot.contents
     first, *others = contents.instances

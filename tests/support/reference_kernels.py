@@ -83,10 +83,9 @@ def find_ambient_visibility(
     valid = hit & (ids >= 0.0) & (ids < 65536.0)
     light = np.where(valid, known[np.where(valid, ids, F32(0.0)).astype(np.intp)], np.uint8(0))
     inverse: Floats = np.full(depth.shape, F32(-1.0) / FAR_M)
-    np.divide(np.where(light == 1, F32(-1.0), F32(1.0)), depth, out=inverse, where=hit)
-    known_shadow = (inverse > 0.0) & (light == 2)
+    np.divide(np.where(light > 0, F32(-1.0), F32(1.0)), depth, out=inverse, where=hit)
     tiles = _live_tiles(inverse > 0.0, int(numbers[5]) // TILE)
-    share = np.where(tiles, _raw_visibility(inverse, known_shadow, numbers, pattern), np.uint8(255))
+    share = np.where(tiles, _raw_visibility(inverse, numbers, pattern), np.uint8(255))
     same_surface, wide = numbers[8], int(numbers[9])
     for step, axis in ((1, 1), (1, 0), (wide, 1), (wide, 0)):
         mean = _mean_of_four(share, inverse, same_surface, step, axis)
@@ -108,9 +107,7 @@ def _live_tiles(live: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
     return found
 
 
-def _raw_visibility(
-    inverse: Floats, known_shadow: NDArray[np.bool_], numbers: Floats, pattern: Floats
-) -> NDArray[np.uint8]:
+def _raw_visibility(inverse: Floats, numbers: Floats, pattern: Floats) -> NDArray[np.uint8]:
     focal, cx, cy, radius_m, least_reach_px, reach_px, bias, scale, _, _ = numbers
     rows, columns = inverse.shape
     one, zero, half = F32(1.0), F32(0.0), F32(0.5)
@@ -123,8 +120,7 @@ def _raw_visibility(
     x, y = (u - cx) * per_f, (v - cy) * per_f
     c = w - a * x - b * y
     z = one / w
-    bits = (one / inverse).view(np.uint32) & np.uint32(0xFFFFFFFE)
-    depth = (bits | known_shadow.astype(np.uint32)).view(F32)
+    depth = one / inverse
     px, py, self_m2 = x * z, y * z, F32(1e-7) * z * z
     hidden = np.zeros(inverse.shape, F32)
     block = (np.arange(rows) & 3)[:, None] * 4 + (np.arange(columns) & 3)
@@ -145,9 +141,7 @@ def _raw_visibility(
             fall = np.fmax(one - d2 * per_r2, zero)
             height_m = (one - (a * qx + b * qy + c * tz)) * plane_m
             rise = height_m / np.sqrt(d2) - bias
-            other_known = known_shadow[tv, tu]
-            moves = (depth[tv, tu] > zero) & ~other_known
-            counts = inside & (moves | ((inverse > zero) & (~known_shadow | other_known)))
+            counts = inside & ((other > zero) | (inverse > zero))
             hidden += np.where(counts, np.fmax(rise, zero) * fall, zero)
     share = F32(255.0) / (one + scale * hidden) + half
     return np.where(reach >= least_reach_px, share.astype(np.uint8), np.uint8(255))

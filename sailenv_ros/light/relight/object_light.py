@@ -22,7 +22,12 @@ from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import QUICK, Quality
 from sailenv_ros.light.relight.ray_world import RayWorld, ray_world
-from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance, placed_instances
+from sailenv_ros.light.relight.scene_changes import (
+    Change,
+    PlacedInstance,
+    placed_instances,
+    ray_instances,
+)
 from sailenv_ros.light.relight.sent_light import sent_by_light, sent_by_probes
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import direct_light_delta, gather_change
@@ -127,7 +132,12 @@ class ObjectLighting:
         self.world = ray_world(scene, changes, scene.sent, scene.sent, settled=True)
 
     def light_on(
-        self, thing: PlacedObject, near: Sequence[PlacedObject], quality: Quality
+        self,
+        thing: PlacedObject,
+        near: Sequence[PlacedObject],
+        quality: Quality,
+        *,
+        shading: bool = False,
     ) -> ObjectLight:
         """Return the light on an object.
 
@@ -142,7 +152,12 @@ class ObjectLighting:
         positions, normals = _placed_points(
             thing, *self._points.of(thing.model, quality.object_points)
         )
-        bounced, direct, weights = self._gathered(world, positions, normals, quality)
+        solid = self._scene.shape_of(thing.model, thing.scale, None)
+        pose = thing.world_from_body
+        own = None
+        if shading:
+            own, _ = ray_instances([PlacedInstance(solid, pose, None, None, True, True)])
+        bounced, direct, weights = self._gathered(world, own, positions, normals, quality)
         axes = thing.world_from_body[:3, :3].T
         fit = _fit(positions, normals, weights, axes)
         by_layer = (fit @ bounced).reshape(LIGHT_TERMS, self._layers, 3).transpose(1, 0, 2)
@@ -164,20 +179,27 @@ class ObjectLighting:
             sent = sent_by_probes(probes, grid, thing.model, thing.scale, pose)
         else:
             points = _placed_points(thing, *self._points.of(thing.model, QUICK.object_points))
-            sent = sent_by_light(self.light_on(thing, (), QUICK), *points, thing.model)
+            sent = sent_by_light(
+                self.light_on(thing, (), QUICK, shading=True), *points, thing.model
+            )
         made = PlacedInstance(shape, pose, None, sent, True, True)
         self._placed[thing.id] = place, made
         return made
 
     def _gathered(
-        self, world: RayWorld, positions: Floats, normals: Floats, quality: Quality
+        self,
+        world: RayWorld,
+        own: NDArray[np.void] | None,
+        positions: Floats,
+        normals: Floats,
+        quality: Quality,
     ) -> tuple[Doubles, Doubles, Doubles]:
         """Return (P, 3 L) bounced, (P, L) direct irradiance / pi, and (P,) how much each counts."""
         count = len(positions)
         found, bounced, of_areas, nearness = gather_change(
             world.record, positions, normals, np.full(count, WHOLE, np.uint8),
             low_discrepancy_points(quality.object_rays), self._areas,
-            sequence_points(quality.area_rays), 0.0, inside_share=INSIDE_SHARE, threads=1,
+            sequence_points(quality.area_rays), 0.0, inside_share=INSIDE_SHARE, own=own, threads=1,
         )  # fmt: skip
         direct = np.zeros((count, self._layers))
         direct[:, self._area] = of_areas

@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.relight.baked_scene import albedo_of_model
 from sailenv_ros.native.relight_kernels import light_of_probes
+from sailenv_ros.rays.model_triangles import triangles_of
+from sailenv_ros.rays.own_occlusion import arriving_share, hidden_shares
 from sailenv_ros.types.baked_light import ObjectLight, ProbeGrid
+from sailenv_ros.types.digests import once
 from sailenv_ros.types.model import Model
 
 __all__ = ["sent_by_light", "sent_by_probes"]
@@ -89,7 +92,26 @@ def _facing(axes: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate([axes, -axes])
 
 
+@once
+def _given_back(model: Model) -> Floats:
+    """Return (6, 3) float32: share of the light from around that each side of a model gives back.
+
+    Less than its albedo where it hides itself; what is hidden is seldom seen, and counts less.
+    """
+    albedo = albedo_of_model(model)
+    every = triangles_of(model)
+    parts = zip(hidden_shares(model), model.parts, strict=True)
+    hidden = np.concatenate([own[part.mesh.triangles].mean(axis=1) for own, part in parts])
+    normals = every.normals.mean(axis=1)
+    counts = (every.areas_m2 * np.maximum(1.0 - hidden, 0.02))[:, None]
+    counts = counts * np.maximum(np.concatenate([normals, -normals], axis=1), 0.0) ** 2
+    shares = arriving_share(hidden[:, None], albedo.astype(np.float64)[None])
+    sums = counts.sum(axis=0)[:, None]
+    mean = np.where(sums > 0.0, counts.T @ shares / np.maximum(sums, 1e-30), 1.0)
+    return (mean * albedo).astype(np.float32)
+
+
 def _sent(arrives: NDArray[np.floating], model: Model) -> Floats:
     """Return (6, C) float32: radiance, by irradiance / pi (6, L, 3)."""
-    sent = np.maximum(arrives, 0.0) * albedo_of_model(model)
+    sent = np.maximum(arrives, 0.0) * _given_back(model)[:, None]
     return np.ascontiguousarray(sent.reshape(SIDES, -1), np.float32)

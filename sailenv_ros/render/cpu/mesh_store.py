@@ -74,7 +74,7 @@ class MeshStore:
     """The meshes of the scenes that were shown last."""
 
     def __init__(self) -> None:
-        self._meshes: dict[tuple[int, int, int], MeshArrays] = {}
+        self._meshes: dict[tuple[int, int, int, int], MeshArrays] = {}
 
     def get(self, drawn: DrawnMesh) -> MeshArrays:
         """Return a mesh; it is made if it is not there."""

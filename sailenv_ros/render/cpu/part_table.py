@@ -30,6 +30,7 @@ from sailenv_ros.render.cpu.texture_store import TextureStore
 from sailenv_ros.render.scene.drawn_meshes import (
     DrawnMesh,
     chart_table,
+    is_shaded,
     meshes_of,
     owner_of,
     unwrappings,
@@ -92,7 +93,7 @@ class PartTable:
         self._empty()
 
     def _empty(self) -> None:
-        self._models: dict[tuple[int, int, int], _ModelParts] = {}
+        self._models: dict[tuple[int, int, int, bool], _ModelParts] = {}
         self._deforming: list[tuple[int, int, list[DrawnMesh]]] = []
         self._moving: list[_MovingMesh] | None = []
         self.contents: SceneContents | None = None
@@ -172,7 +173,7 @@ class PartTable:
         self._keys = keys
         charts, self._baked_poses = chart_table(contents)
         self._scales = np.array([drawn.scale for drawn in contents.instances]).reshape(-1, 3)
-        models: dict[tuple[int, int, int], _ModelParts] = {}
+        models: dict[tuple[int, int, int, bool], _ModelParts] = {}
         casting_of: dict[tuple[int, tuple[float, ...]], bool] = {}
         shown: list[tuple[_ModelParts, int, bool]] = []
         is_new = False
@@ -184,10 +185,12 @@ class PartTable:
             if not drawn.model.parts:
                 continue
             owner = owner_of(drawn)
-            key = (id(drawn.model), id(flat), owner)
+            shaded = is_shaded(drawn, contents)
+            key = (id(drawn.model), id(flat), owner, shaded)
             made = models.get(key) or self._models.get(key)
             if made is None:
-                made, is_new = self._make(drawn.model, meshes_of(drawn.model, flat, owner)), True
+                meshes = meshes_of(drawn.model, flat, owner, shaded=shaded)
+                made, is_new = self._make(drawn.model, meshes), True
             models[key] = made
             if owner:
                 deforming.append((row, owner, made.meshes))

@@ -147,6 +147,8 @@ class DrawList:
         casting = np.array([casts(contents.instances[row]) for row in self._instance_rows], bool)
         self.casters = Batch(_CASTER, everything[casting])
         self._charts, self._baked_poses = chart_table(contents)
+        self._charted = self._charts.any(axis=1)
+        self._charts[~self._charted, 3] = 1.0
         self._one_sided = np.array([not kind.double_sided for kind in kinds], bool)
         self._clip = np.zeros((len(parts), 4, 4))
         self._eye_from_object = np.zeros((len(contents.instances), 4, 4))
@@ -181,9 +183,11 @@ class DrawList:
             # GLSL stores columns, NumPy rows: the transpose is what GLSL reads as the matrix.
             self.uniforms[:, :4] = clip.transpose(0, 2, 1)[self._instance_rows]
             self.uniforms[:, _NORMAL : _NORMAL + 3, :3] = normal[self._instance_rows]
-            self.uniforms[:, _CHART] = np.where(
-                self.at_baked_pose(snapshot)[:, None], self._charts, 0.0
-            )[self._instance_rows]
+            # What has no chart has the share that it hides of itself there.
+            known = self.at_baked_pose(snapshot) | ~self._charted
+            self.uniforms[:, _CHART] = np.where(known[:, None], self._charts, 0.0)[
+                self._instance_rows
+            ]
             self._clip = clip[self._instance_rows]
             self._eye_from_object = eye_from_object
             self._visible, self._distance = _seen(self._clip, self._corners)

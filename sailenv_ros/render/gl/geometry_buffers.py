@@ -72,8 +72,8 @@ class GeometryBuffers:
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
-        self._slices: dict[tuple[int, int, int], MeshSlice] = {}
-        self._moving: dict[tuple[int, int, int], _MovingMesh] = {}
+        self._slices: dict[tuple[int, int, int, int], MeshSlice] = {}
+        self._moving: dict[tuple[int, int, int, int], _MovingMesh] = {}
         self._kept: list[DrawnMesh] = []
         self.vertex_buffer = context.buffer(np.zeros(1, VERTEX).tobytes())
         self.index_buffer = context.buffer(np.zeros(1, np.uint32).tobytes())

@@ -21,10 +21,7 @@ from sailenv_ros.frame.lens_rays import tells_depth, unit_ray_planes
 from sailenv_ros.native.picture_kernels import AmbientSettings, find_ambient_visibility
 from sailenv_ros.types.camera import CameraIntrinsics
 
-__all__ = ["BAKED_LIGHT", "BAKED_SHADOW", "PATTERN", "ambient_visibility", "kernel_settings"]
-
-BAKED_LIGHT, BAKED_SHADOW = 1, 2
-"""Of an instance its light is known, or the shadow that it casts on what has such light."""
+__all__ = ["PATTERN", "ambient_visibility", "kernel_settings"]
 
 TAPS = 12
 REACH_PX = 48
@@ -86,8 +83,7 @@ def ambient_visibility(
     radius_m : float
         How far away surfaces hide light from each other [m].
     known : (65536,) uint8
-        By instance id, `BAKED_LIGHT` or `BAKED_SHADOW`: surfaces whose light was baked do not
-        darken each other, nor they and those whose shadow is in that light; 0 of others.
+        By instance id, 1 of surfaces whose light is known, which do not darken each other.
     threads : int
         The result does not depend on it.
 

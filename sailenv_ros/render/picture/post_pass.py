@@ -166,12 +166,15 @@ class PostPass:
 
 
 def _known(snapshot: WorldSnapshot, still: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Return (65536,) uint8: what is known of each instance's light; see `ambient_visibility`."""
+    """Return (65536,) uint8: 1 of instances whose light is known; see `ambient_visibility`.
+
+    Of what rests, too, if its shadows were found: rays told what arrives there.
+    """
     known = np.zeros(65536, np.uint8)
     baked = snapshot.contents.baked
     if baked is not None:
-        known[list(baked.casters)] = ambient_occlusion.BAKED_SHADOW
-    known[snapshot.contents.instance_ids[still]] = ambient_occlusion.BAKED_LIGHT
+        known[list(baked.casters)] = 1
+    known[snapshot.contents.instance_ids[still]] = 1
     return known
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.rays.own_occlusion import hidden_shares
 from sailenv_ros.types.baked_light import Unwrapping
 from sailenv_ros.types.model import Mesh, Model
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents
@@ -23,6 +24,7 @@ __all__ = [
     "corner_sources",
     "corners_of",
     "drawn_meshes",
+    "is_shaded",
     "meshes_of",
     "owner_of",
     "unwrappings",
@@ -45,17 +47,20 @@ class DrawnMesh:
         Number of the mesh among its model's parts.
     owner : int
         Id of the instance if its vertices move; 0 for a mesh that all instances share.
+    hidden : (V,) float32 or None
+        See `hidden_shares`; None where nothing is known of it.
     """
 
     mesh: Mesh
     unwrapping: Unwrapping | None
     part: int
     owner: int = 0
+    hidden: NDArray[np.float32] | None = None
 
     @property
-    def key(self) -> tuple[int, int, int]:
-        """Key that is unique to a drawn mesh while both of its objects live."""
-        return id(self.mesh), id(self.unwrapping), self.owner
+    def key(self) -> tuple[int, int, int, int]:
+        """Key that is unique to a drawn mesh while its objects live."""
+        return id(self.mesh), id(self.unwrapping), self.owner, id(self.hidden)
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
@@ -72,13 +77,18 @@ class DrawnMesh:
         )
 
     def interleaved(self) -> NDArray[np.void]:
-        """Return the vertices as the buffer holds them."""
+        """Return the vertices as the buffer holds them.
+
+        What has no place in a light map has there 0 and the share that it hides of itself.
+        """
         mesh = self.mesh
         result = np.zeros(self.vertex_count, VERTEX)
         chosen: slice | NDArray[np.uint32] = slice(None)
         if self.unwrapping is not None:
             chosen = self.unwrapping.vertices[self.part]
             result["light_uv"] = self.unwrapping.uvs[self.part]
+        elif self.hidden is not None:
+            result["light_uv"][:, 1] = self.hidden
         result["position"] = mesh.positions[chosen]
         result["normal"] = mesh.normals[chosen]
         result["uv"] = mesh.uvs[chosen]
@@ -88,16 +98,32 @@ class DrawnMesh:
 def drawn_meshes(contents: SceneContents) -> list[list[DrawnMesh]]:
     """Return the meshes of each instance's parts, in their order."""
     return [
-        meshes_of(drawn.model, flat, owner_of(drawn))
+        meshes_of(drawn.model, flat, owner_of(drawn), shaded=is_shaded(drawn, contents))
         for drawn, flat in zip(contents.instances, unwrappings(contents), strict=True)
     ]
 
 
-def meshes_of(model: Model, unwrapping: Unwrapping | None, owner: int = 0) -> list[DrawnMesh]:
-    """Return the meshes of a model's parts, in their order; see `DrawnMesh.owner`."""
+def meshes_of(
+    model: Model, unwrapping: Unwrapping | None, owner: int = 0, *, shaded: bool = False
+) -> list[DrawnMesh]:
+    """Return the meshes of a model's parts, in their order; see `DrawnMesh.owner`.
+
+    Parameters
+    ----------
+    shaded : bool
+        Whether what hides itself is darker, where it has no place in a light map and is rigid.
+    """
+    told = shaded and unwrapping is None and not owner
+    hidden = hidden_shares(model) if told else (None,) * len(model.parts)
     return [
-        DrawnMesh(part.mesh, unwrapping, place, owner) for place, part in enumerate(model.parts)
+        DrawnMesh(part.mesh, unwrapping, place, owner, own)
+        for place, (part, own) in enumerate(zip(model.parts, hidden, strict=True))
     ]
+
+
+def is_shaded(drawn: DrawnInstance, contents: SceneContents) -> bool:
+    """Return whether an instance is lit as what can move is, in a room with baked light."""
+    return contents.baked is not None and drawn.outside is None
 
 
 def owner_of(drawn: DrawnInstance) -> int:

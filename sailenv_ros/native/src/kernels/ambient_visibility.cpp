@@ -10,7 +10,7 @@
     FIELD(int64_t, height)                                                               \
     FIELD(int64_t, width)                                                                \
     FIELD(const float*, surface) /* (H, W, 2): depth [m], id */                          \
-    FIELD(const uint8_t*, known) /* (65536,): KnownLight of each instance */             \
+    FIELD(const uint8_t*, known) /* (65536,): 1 of instances whose light is known */     \
     FIELD(const float*, pattern) /* (16, 2, TAPS) */                                     \
     FIELD(const sailenv::Lens*, lens)                                                    \
     FIELD(const float*, rays) /* (3, h, w): rays of any length, and the surface holds */ \
@@ -37,13 +37,6 @@ constexpr int64_t MOST_STEP = 4;  // from one sample to the next of the second a
 constexpr int64_t PAD = 16;       // samples beyond both ends of a row that count as on no surface
 constexpr int64_t INSTANCES = 65536;
 
-// What is known of an instance's light.
-enum KnownLight : uint8_t {
-    LIGHT_UNKNOWN = 0,
-    LIGHT_BAKED = 1,
-    SHADOW_BAKED = 2,  // what it hides from what is baked, and that from it, is in their light
-};
-
 struct Settings {
     sailenv::FastLens lens;  // of the samples
     float radius_m;
@@ -55,11 +48,11 @@ struct Settings {
 struct Samples {
     int64_t rows, columns;
     float* inverse;        // (rows, columns): 1 / depth, negative where light was baked
-    float* depth;          // (rows, columns): see told_depth
+    float* depth;          // (rows, columns): 1 / inverse
     const uint8_t* tiles;  // (tile rows, tile columns): 1 where something may be darkened
     int64_t tile_columns;
     const float* rays;  // (3, rows, columns), or null
-    float* points;      // (rows, columns, 4), or null without rays: places [m], told_depth
+    float* points;      // (rows, columns, 4), or null without rays: places [m], depth
 };
 
 // The length of a sample's ray, over which the surface's distance is; 1 through a pin-hole.
@@ -68,16 +61,6 @@ LANES_INLINE float ray_length(const Samples& s, int64_t place) {
     const int64_t plane = s.rows * s.columns;
     const float *x = s.rays + place, *y = x + plane, *z = y + plane;
     return __builtin_sqrtf(*x * *x + *y * *y + *z * *z);
-}
-
-// A depth that is negative where it darkens nothing that was baked, and odd where that does not
-// darken it either.
-float told_depth(float depth, bool shadow_is_baked) {
-    uint32_t bits;
-    memcpy(&bits, &depth, sizeof bits);
-    bits = shadow_is_baked ? bits | 0x80000001U : bits & 0xfffffffeU;
-    memcpy(&depth, &bits, sizeof bits);
-    return depth;
 }
 
 void set_point(const Samples& s, int64_t place, float told) {
@@ -96,11 +79,10 @@ void halve_rows(const float* surface, int64_t width, const uint8_t* known, const
             const float z = row[4 * u] / ray_length(s, v * s.columns + u), id = row[4 * u + 1];
             const bool hit = z > 1.0f / FAR_M && z < FAR_M;
             const bool has_id = hit && id >= 0.0f && id < INSTANCES;
-            uint8_t light = LIGHT_UNKNOWN;
-            if (has_id) light = known[static_cast<int32_t>(id)];
-            const float inverse = !hit ? -1.0f / FAR_M : (light == LIGHT_BAKED ? -1.0f : 1.0f) / z;
+            const bool is_known = has_id && known[static_cast<int32_t>(id)] != 0;
+            const float inverse = !hit ? -1.0f / FAR_M : (is_known ? -1.0f : 1.0f) / z;
             s.inverse[v * s.columns + u] = inverse;
-            const float told = told_depth(1.0f / inverse, light == SHADOW_BAKED);
+            const float told = 1.0f / inverse;
             s.depth[v * s.columns + u] = told;
             if (s.points != nullptr) set_point(s, v * s.columns + u, told);
             if (inverse > 0.0f) own_tiles[u / TILE] = 1;
@@ -219,7 +201,6 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
         }
         const f8 own = load_some(row + u, count);
         const i8 own_moves = own > zero;
-        const i8 own_known = own_moves & (load_some(s.depth + v * s.columns + u, count) < zero);
         const f8 w = abs8(own);
         const f8 column = counting() + static_cast<float>(u);
         RayChanges rays;
@@ -321,8 +302,7 @@ void find_row(const Samples& s, const Settings& set, const float* pattern, int64
             const f8 fall = max8(one - d2 * per_r2, zero);
             const f8 height_m = (level - (a * qx + b * qy + c * qz)) * plane_m;
             const f8 rise = height_m / sqrt8(d2) - set.bias;
-            const i8 odd = (bits(other) & 1) != 0;
-            const i8 counts = inside & ((other > zero) | (own_moves & (~own_known | odd)));
+            const i8 counts = inside & ((other > zero) | own_moves);
             hidden = hidden + select8(counts, max8(rise, zero) * fall, zero);
         }
         // What hides light gives some of it back: no place is black.

@@ -103,9 +103,7 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     f8 facing = dot(normal, view) * unit;
     normal = normal * (facing < 0.0f ? -unit : unit);
     facing = abs8(facing);
-    // For a refractive index of 1.5.
-    const f8 fresnel = 0.04f + 0.96f * schlick_share(min8(facing, splat(1.0f)));
-    const f8 rest = 1.0f - fresnel;
+    const f8 share = pane_reflectance(facing, part.roughness), rest = 1.0f - share;
     const Vec3x8 point = begin + ray * depth;
     const Vec3x8 direction = 2.0f * facing * normal - view;
     Vec3x8 mirrored = mirrored_light(light, part, point, direction);
@@ -126,13 +124,13 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     const Vec3x8 seen_through = Vec3x8(load(behind), load(behind + 8), load(behind + 16)) * through;
     if (light.reflecting && light.traced != nullptr) {
         const f8 seen = luminance(own * light.exposure + seen_through);
-        const i8 clear = wanted & (luminance(mirrored) * fresnel * light.exposure >= SEEN * seen);
+        const i8 clear = wanted & (luminance(mirrored) * share * light.exposure >= SEEN * seen);
         if (any(clear)) {
             mirrored =
                 trace_glass(s, point, direction, depth / inverse_length(ray), clear, mirrored);
         }
     }
-    const Vec3x8 added = fresnel * mirrored + own;
+    const Vec3x8 added = share * mirrored + own;
     const Vec3x8 sum = clamp(clamp(added * light.exposure, 0.0f, 6e4f) + seen_through, 0.0f, 6e4f);
     const i8 r = to_half(sum.x), g = to_half(sum.y), b = to_half(sum.z);
     for (int k = 0; k < 8; k++) {

@@ -95,6 +95,29 @@ LIGHT_LAW Real irradiance_of_terms(Real t[28], Real3 normal, Real3 front, Real3 
            back.z * at_place(t[24], t[25], t[26], t[27], point);
 }
 
+// Share of the light from around that arrives where a surface hides a share of the hemisphere from
+// itself, with what light it sends on between its own parts: the fit of Jimenez et al. 2016,
+// "Practical real-time strategies for accurate indirect occlusion".
+LIGHT_LAW Real arriving_share(Real hidden, Real albedo) {
+    Real open = 1.0f - clamp(hidden, 0.0f, 1.0f);
+    Real third = 2.0404f * albedo - 0.3324f;
+    Real second = 0.6417f - 4.7951f * albedo;
+    Real first = 2.7552f * albedo + 0.6903f;
+    return open * max(((third * open) + second) * open + first, 1.0f);
+}
+
+// See-through things as rough as this are cloth, and mirror nothing.
+const float LEAST_CLOTH = 0.5f;
+
+// Share of light that a pane mirrors, for the cosine between ray and normal: by Schlick's term for
+// an index of 1.5 at each of its two faces, with all that goes to and fro between these.
+LIGHT_LAW Real pane_reflectance(Real cosine, float roughness) {
+    Real grazing = 1.0f - clamp(cosine, 0.0f, 1.0f);
+    Real square = grazing * grazing;
+    Real once = 0.04f + 0.96f * square * square * grazing;
+    return 2.0f * once / (1.0f + once) * (roughness < LEAST_CLOTH ? 1.0f : 0.0f);
+}
+
 #undef LIGHT_LAW
 #undef Real
 #undef Real3

@@ -18,6 +18,9 @@ constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 constexpr double COVERED = 0.95;
 constexpr float COVERED_M = 0.015f;
 
+// An object takes light from surfaces nearer than this many of its radii.
+constexpr float OWN_REACH = 2.0f;
+
 // How much each of six sides of a body counts, where a ray meets a triangle: by the squares of the
 // normal's parts along the body's axes (see `irradiance_of_terms`).
 struct SideShares {
@@ -132,16 +135,41 @@ private:
 
 float nearness_of(float t) { return 1.0f / std::min(std::max(t, 1e-3f), FAR_M); }
 
+// Whether a surface that a ray met gets light from one direction, by a random one of those that its
+// irradiance comes from, past an object that was not there when its light was baked.
+bool gets_light(const Ray& r, const Hit& hit, const RayInstance& past, uint32_t number) {
+    const float* m = hit.instance->body_from_world;
+    const vec3 own = triangle_normal(*hit.instance->shape, hit.triangle);
+    const vec3 normal(own.x * m[0] + own.y * m[4] + own.z * m[8],
+                      own.x * m[1] + own.y * m[5] + own.z * m[9],
+                      own.x * m[2] + own.y * m[6] + own.z * m[10]);
+    const float length = std::sqrt(std::max(dot(normal, normal), 1e-30f));
+    const bool away = dot(normal, vec3(r.d[0], r.d[1], r.d[2])) > 0.0f;
+    const float scale = (away ? -1.0f : 1.0f) / length;
+    const float n[3] = {normal.x * scale, normal.y * scale, normal.z * scale};
+    float from[3], d[3];
+    for (int c = 0; c < 3; c++) from[c] = r.o[c] + r.d[c] * hit.t + n[c] * LIFT_M;
+    cosine_direction(n, scatter(2 * number), scatter(2 * number + 1), d);
+    return !instance_occludes(past, ray_of(from, d), 1e30f);
+}
+
 // All of the light.
-Gathered gather_whole(const RayScene& s, const CosineRays& rays, const PatchQuery& q, float* sum) {
+Gathered gather_whole(const RayScene& s, const CosineRays& rays, const PatchQuery& q,
+                      uint32_t number, float* sum) {
     const float each = 1.0f / static_cast<float>(q.rays);
     int64_t backs = 0;
     float near = 0.0f;
     for (int64_t m = 0; m < q.rays; m++) {
         const Ray r = rays.ray(q.pattern + 2 * m);
         const Hit hit = meet_after(s, r);
-        backs += !add_seen(s, hit, r, s.after, each, sum);
         near += nearness_of(hit.t);
+        if (q.own != nullptr && hit.triangle >= 0 && hit.front &&
+            hit.t < OWN_REACH * q.own->sphere[3]) {
+            const uint32_t next =
+                (number * static_cast<uint32_t>(q.rays) + static_cast<uint32_t>(m));
+            if (!gets_light(r, hit, *q.own, next)) continue;
+        }
+        backs += !add_seen(s, hit, r, s.after, each, sum);
     }
     const bool inside = static_cast<double>(backs) > q.inside_share * static_cast<double>(q.rays);
     return {inside ? PATCH_INSIDE : PATCH_WHOLE, static_cast<float>(q.rays) / near};
@@ -149,7 +177,7 @@ Gathered gather_whole(const RayScene& s, const CosineRays& rays, const PatchQuer
 
 // The change; or all of the light, where little of what was baked is of use.
 Gathered gather_difference(const RayScene& s, const SeenChanges& seen, const CosineRays& rays,
-                           const PatchQuery& q, float* sum) {
+                           const PatchQuery& q, uint32_t number, float* sum) {
     const float each = 1.0f / static_cast<float>(q.rays);
     int64_t changed = 0, backs = 0;
     float near = 0.0f;
@@ -165,7 +193,7 @@ Gathered gather_difference(const RayScene& s, const SeenChanges& seen, const Cos
     const double count = static_cast<double>(q.rays);
     if (static_cast<double>(changed) > q.most_changed * count) {
         memset(sum, 0, static_cast<size_t>(s.channels) * sizeof(float));
-        return gather_whole(s, rays, q, sum);
+        return gather_whole(s, rays, q, number, sum);
     }
     if (changed == 0) return {PATCH_AS_IT_WAS, FAR_M};
     const float nearness = static_cast<float>(changed) / near;
@@ -186,11 +214,11 @@ void gather_patch(const RayScene& s, const PatchQuery& q, int64_t k, const Patch
     const uint32_t number = q.numbers[k];
     Gathered own = {PATCH_AS_IT_WAS, FAR_M};
     if (q.wanted[k] == PATCH_WHOLE) {
-        own = gather_whole(s, CosineRays(p, n, number), q, bounced);
+        own = gather_whole(s, CosineRays(p, n, number), q, number, bounced);
     } else {
         const SeenChanges seen = seen_changes(s, p, n, static_cast<float>(q.least));
         if (seen.count > 0) {
-            own = gather_difference(s, seen, CosineRays(p, n, number), q, bounced);
+            own = gather_difference(s, seen, CosineRays(p, n, number), q, number, bounced);
         }
     }
     result.found[k] = own.state;

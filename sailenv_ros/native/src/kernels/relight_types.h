@@ -45,6 +45,7 @@ struct PatchQuery {
     const float* pattern;       // (rays, 2), points of the unit square
     const RayLight* lights;     // (light_count,): area lights
     const float* shot_pattern;  // (shots, 2), for rays to each of them
+    const RayInstance* own;     // what the points lie on, and was not baked; or null
     int64_t count, rays, light_count, shots;
     double least;         // share of a view that changed things must be able to take
     double most_changed;  // share of rays; where more meet a change, all of the light is gathered

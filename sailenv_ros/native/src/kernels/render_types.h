@@ -42,7 +42,7 @@ struct Part {
     const float* corner_z;
     const uint32_t* corner_indices;  // three per triangle
     const uint32_t* vertex_indices;
-    const float* vertices;  // (V, 8): normal, uv, light uv, 0
+    const float* vertices;  // (V, 8): normal, uv, light uv (or 0, hidden), 0
     const Cluster* clusters;
     const Texture* colour_map;  // square root of linear colour, alpha; null for none
     const Texture* detail_map;  // normal x and y, roughness, metallic; null for none

@@ -104,7 +104,8 @@ void light_from_bake(const Shading& s, Chunk& c) {
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 x = clamp8(load(c.light_u + i) * static_cast<float>(width) - 0.5f, 0.0f,
                             static_cast<float>(width) - 1.001f);
-        const f8 y = clamp8(load(c.light_v + i) * static_cast<float>(height) - 0.5f, 0.0f,
+        const f8 v = load(c.light_u + i) > 0.0f ? load(c.light_v + i) : splat(0.0f);
+        const f8 y = clamp8(v * static_cast<float>(height) - 0.5f, 0.0f,
                             static_cast<float>(height) - 1.001f);
         const i8 ix = truncated(x), iy = truncated(y);
         store(across + i, x - to_float(ix));
@@ -129,8 +130,15 @@ void light_from_bake(const Shading& s, Chunk& c) {
         const i8 there = ~load(c.empty + i);
         const i8 free = ~charted & there;
         if (any(free)) {
-            const Vec3x8 found =
+            Vec3x8 found =
                 light_of_instances(light, load(c.id + i), free, c.normal.at(i), c.point.at(i));
+            const f8 hidden = load(c.light_v + i);
+            if (any(free & (hidden > 0.0f))) {
+                const Vec3x8 albedo = c.base.at(i) * (1.0f - load(c.metallic + i));
+                found = found * Vec3x8(arriving_share(hidden, albedo.x),
+                                       arriving_share(hidden, albedo.y),
+                                       arriving_share(hidden, albedo.z));
+            }
             around = where(charted, around, found);
         }
         c.around.set(i, around);

@@ -60,8 +60,9 @@ LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float y, RowPl
                         a1 * ((t.edge[4] * y + t.edge[5]) * q) +
                         a2 * ((t.edge[7] * y + t.edge[8]) * q);
     const bool charted = part.has_chart && s.at_baked_pose[part.instance];
-    const f8 kept = {0, 0, 0, 1, 1, charted ? part.chart[2] : 0.0f, charted ? part.chart[3] : 0.0f,
-                     0};
+    // What has no chart has the share that it hides of itself there.
+    const float along = charted ? part.chart[3] : part.has_chart ? 0.0f : 1.0f;
+    const f8 kept = {0, 0, 0, 1, 1, charted ? part.chart[2] : 0.0f, along, 0};
     r.moved = f8{0, 0, 0, 0, 0, charted ? part.chart[0] : 0.0f, charted ? part.chart[1] : 0.0f, 0};
     const float turned = t.back ? -1.0f : 1.0f;
     const f8 n0 = load(frame.normal_columns[0]) * turned,

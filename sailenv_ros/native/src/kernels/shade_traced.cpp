@@ -174,7 +174,10 @@ void set_hit(const SceneHit& met, vec3 from, vec3 ray, float distance, float ang
     c.v[i] = known[4];
     const bool charted = part.has_chart && one.at_baked_pose;
     c.light_u[i] = charted ? known[5] * part.chart[2] + part.chart[0] : 0.0f;
-    c.light_v[i] = charted ? known[6] * part.chart[3] + part.chart[1] : 0.0f;
+    // Of what has no chart the share that it hides of itself.
+    c.light_v[i] = charted          ? known[6] * part.chart[3] + part.chart[1]
+                   : part.has_chart ? 0.0f
+                                    : known[6];
     put(c.base, i, {part.colour[0], part.colour[1], part.colour[2]});
     c.roughness[i] = part.roughness;
     c.metallic[i] = part.metallic;

@@ -17,7 +17,7 @@ layout(location = 2) out vec4 out_albedo;  // square root of linear albedo, emis
 #endif
 #ifdef BAKED
 in vec2 light_uv;
-layout(location = 3) out vec2 out_light_at;  // place in the light map; 0 where there is none
+layout(location = 3) out vec2 out_light_at;  // place in the light map, or 0 and what is hidden
 #endif
 #endif
 // Views that are written as they are; the fourth component is 1 where there is a surface.

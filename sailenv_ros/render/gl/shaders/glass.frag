@@ -36,17 +36,14 @@ void main() {
     vec3 view = -normalize(ray);
     vec3 normal = normalize(optical_normal);
     if (dot(normal, view) < 0.0) normal = -normal;
-    // Schlick's term for a refractive index of 1.5.
-    float grazing = 1.0 - clamp(dot(normal, view), 0.0, 1.0);
-    float g2 = grazing * grazing;
-    float fresnel = 0.04 + 0.96 * g2 * g2 * grazing;
+    float share = pane_reflectance(dot(normal, view), MATERIAL_FINISH.x);
     // What comes through takes the hue of the material, the more the denser it is.
     vec3 hue = base.rgb / max(max(base.r, max(base.g, base.b)), 1e-3);
-    vec3 through = (1.0 - fresnel) * (1.0 - base.a) * mix(vec3(1.0), hue, base.a);
+    vec3 through = (1.0 - share) * (1.0 - base.a) * mix(vec3(1.0), hue, base.a);
     vec3 world_normal = world_from_optical * normal;
     vec3 mirrored = world_from_optical * reflect(-view, normal);
-    vec3 added = fresnel * mirrored_light(ray / gl_FragCoord.w, mirrored, MATERIAL_FINISH.x);
-    added += (1.0 - fresnel) * base.a * base.rgb * light_around(world_normal, ray / gl_FragCoord.w);
+    vec3 added = share * mirrored_light(ray / gl_FragCoord.w, mirrored, MATERIAL_FINISH.x);
+    added += (1.0 - share) * base.a * base.rgb * light_around(world_normal, ray / gl_FragCoord.w);
     added += base.rgb * (MATERIAL_FINISH.w * 16.0);
     // The share of light from around stays that of what lies behind.
     out_added = vec4(finished(added, vec3(0.0)).rgb, 0.0);

@@ -136,6 +136,8 @@ void main() {
     int id = int(texelFetch(surface, pixel, 0).y + 0.5);
     vec3 place_in_world = world_from_optical * point + eye;
     vec3 probed = light_of_instance(id, world_normal, place_in_world);
+    // What has no place in the light map has there the share that it hides of itself.
+    for (int k = 0; k < 3; k++) probed[k] *= arriving_share(place.y, diffuse[k]);
     float charted = place.x > 0.0 ? 1.0 : 0.0;
     vec3 around = mix(probed, mapped.rgb, charted);
     float past_what_stands = main_transmittance * texture(static_shadow_map, in_shadow);

@@ -20,6 +20,7 @@ from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import WorldSnapshot
+from tests.support.bake_scenes import ground
 from tests.support.movable_boxes import (
     BLACK,
     BOX,
@@ -119,6 +120,30 @@ def test_sides_that_face_each_other_are_darker() -> None:
     assert inner < 0.35 * outer
 
 
+def test_what_an_object_sends_back_knows_of_its_own_shadow() -> None:
+    """Below a board over a grey floor, on average, against 20,000 paths by the floor to the sky."""
+    board, height, half = model_of(box_mesh((0.6, 0.6, 0.02)), base_colour=BLACK), 0.1, 0.3
+    grey = ground(6.0, base_colour=(0.5, 0.5, 0.5, 1.0), roughness=1.0)
+    pose = Pose((0.0, 0.0, height + 0.01))
+    snapshot = room((board, pose), environment=WHITE_SKY, floor=grey)
+    lighting = ObjectLighting(scene_of(snapshot), (), SurfacePoints())
+    (thing,) = movable_objects(snapshot)
+    rng = np.random.default_rng(3)
+    u, v, w, t = rng.random((4, 20_000))
+    down, up = (height / np.sqrt(1.0 - x) * np.sqrt(x) for x in (u, w))
+    turn, back = 2.0 * np.pi * v, 2.0 * np.pi * t
+    x, y = rng.uniform(-half, half, (2, 20_000))
+    x, y = x + down * np.cos(turn), y + down * np.sin(turn)
+    met = np.maximum(np.abs(x + up * np.cos(back)), np.abs(y + up * np.sin(back))) < half
+    at, facing = (0.0, 0.0, height), (0, 0, -1)
+    plain, shaded = (
+        lighting.light_on(thing, (), FINE, shading=shading) for shading in (False, True)
+    )
+    before, after = (value(one, one.bounced[0, :, 1], facing, at) for one in (plain, shaded))
+    assert 0.05 < 1.0 - met.mean() < 0.5
+    assert after / before == pytest.approx(1.0 - met.mean(), abs=0.05)
+
+
 def assert_same(one: ObjectLight, two: ObjectLight) -> None:
     for name in ("bounced", "direct", "axes"):
         assert np.array_equal(getattr(one, name), getattr(two, name))
@@ -163,9 +188,9 @@ def asked_qualities(monkeypatch: pytest.MonkeyPatch) -> list[Quality]:
     asked: list[Quality] = []
     of_one = ObjectLighting.light_on
 
-    def light_on(self: ObjectLighting, *arguments: Any) -> ObjectLight:
+    def light_on(self: ObjectLighting, *arguments: Any, **more: Any) -> ObjectLight:
         asked.append(arguments[-1])
-        return of_one(self, *arguments)
+        return of_one(self, *arguments, **more)
 
     monkeypatch.setattr(ObjectLighting, "light_on", light_on)
     return asked

@@ -1,0 +1,185 @@
+"""Light that a model hides from its own surface: from `Model` to a share of each vertex.
+
+In the folds of a curtain, in a cup or between keys little of the light from around arrives. How
+much is the same wherever the model stands, so it is found once: rays from points of every triangle
+tell which share of the cosine-weighted hemisphere is hidden, and a fit gives it to the vertices,
+between which it is interpolated. Glass hides nothing.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sailenv_ros.native.library import native_library
+from sailenv_ros.native.ray_kernels import light_hits
+from sailenv_ros.rays.model_triangles import triangles_of
+from sailenv_ros.rays.triangle_tree import triangle_tree
+from sailenv_ros.system.array_cache import cached_arrays, code_digest
+from sailenv_ros.system.threads import thread_count
+from sailenv_ros.types.digests import model_digest, once
+from sailenv_ros.types.model import Model
+
+__all__ = ["arriving_share", "hidden_shares"]
+
+Floats: TypeAlias = NDArray[np.float32]
+Doubles: TypeAlias = NDArray[np.float64]
+
+RAYS = 64
+"""Of each point."""
+
+POINTS = 4096
+"""Of a model, by area; each triangle has one at least, and no more than `MOST_OF_TRIANGLE`."""
+
+MOST_OF_TRIANGLE = 64
+
+ROUNDS = 8
+"""Of the fit; its error is below the noise of the rays after these."""
+
+LEAST_WEIGHT = 0.02
+"""Of what is hidden altogether, in the fit."""
+
+LIFT = 1e-3
+"""Of a point from its surface, as a share of the model's size; rays begin there."""
+
+_RAYS_AT_ONCE = 1 << 20
+
+
+@once
+def hidden_shares(model: Model) -> tuple[Floats, ...]:
+    """Return which share of the light from around a model takes from its own surface.
+
+    Returns
+    -------
+    tuple of (V,) float32
+        Of the vertices of each part, 0 to 1; 0 of glass, and of what nothing hides.
+    """
+    key = model_digest(model), native_library().digest
+    made = cached_arrays("hidden", key, lambda: _arrays(model), code=code_digest("rays"))
+    return tuple(made[f"part_{number}"] for number in range(len(model.parts)))
+
+
+def arriving_share(hidden: Doubles, albedo: Doubles) -> Doubles:
+    """Return which share of the light from around arrives where a share is hidden.
+
+    With what light a surface sends on between its own parts: the law of light_law.h, by the fit of
+    Jimenez et al. 2016, "Practical real-time strategies for accurate indirect occlusion".
+    """
+    share = 1.0 - hidden
+    third, second = 2.0404 * albedo - 0.3324, 0.6417 - 4.7951 * albedo
+    first = 2.7552 * albedo + 0.6903
+    return np.asarray(share * np.maximum((third * share + second) * share + first, 1.0))
+
+
+def _arrays(model: Model) -> dict[str, Floats]:
+    triangles = triangles_of(model)
+    counts = [len(part.mesh.positions) for part in model.parts]
+    firsts = np.cumsum([0, *counts])
+    vertices = np.concatenate(
+        [
+            part.mesh.triangles.astype(np.int64) + k
+            for part, k in zip(model.parts, firsts, strict=False)
+        ]
+    )
+    solid = triangles.passes == 0.0
+    hidden = np.zeros(firsts[-1])
+    if solid.any():
+        corners, normals = (
+            array[solid].astype(np.float64) for array in (triangles.corners, triangles.normals)
+        )
+        owners, weights = _points(triangles.areas_m2[solid])
+        shares = _hidden_at(corners, normals, owners, weights)
+        if shares.any():
+            hidden = _fitted(shares, vertices[solid][owners], weights, len(hidden))
+    parts = np.split(hidden.astype(np.float32), firsts[1:-1])
+    return {f"part_{number}": part for number, part in enumerate(parts)}
+
+
+def _points(areas: Doubles) -> tuple[NDArray[np.intp], Doubles]:
+    """Spread points: (P,) the triangle of each, and (P, 3) weights of its corners."""
+    wanted = np.ceil(POINTS * areas / max(float(areas.sum()), 1e-30))
+    each = np.clip(wanted, 1, MOST_OF_TRIANGLE).astype(np.intp)
+    owners = np.repeat(np.arange(len(areas)), each)
+    number = np.arange(len(owners)) - np.repeat(np.cumsum(each) - each, each)
+    # The plastic sequence of Roberts (2018), which is even however many points a triangle has.
+    u, v = np.modf((number[:, None] + 0.5) * [0.7548776662466927, 0.5698402909980532])[0].T
+    root = np.sqrt(u)
+    alone = np.repeat(each == 1, each)[:, None]
+    weights = np.stack([1.0 - root, root * (1.0 - v), root * v], axis=1)
+    return owners, np.where(alone, 1.0 / 3.0, weights)
+
+
+def _hidden_at(
+    corners: Doubles, normals: Doubles, owners: NDArray[np.intp], weights: Doubles
+) -> Doubles:
+    """Return (P,) the share of directions in which each point meets the model itself."""
+    tree = triangle_tree(corners.astype(np.float32))
+    size = float(np.linalg.norm(tree.high - tree.low))
+    middle = corners.mean(axis=1, keepdims=True)
+    flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-30)
+    # A little inwards from the edges, where a neighbour may stand on end.
+    inner = middle + 0.98 * (corners - middle)
+    points = np.einsum("pc,pcx->px", weights, inner[owners]) + LIFT * size * flat[owners]
+    turned = np.einsum("pc,pcx->px", weights, normals[owners])
+    turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-30)
+    shares = np.empty(len(points))
+    step = max(1, _RAYS_AT_ONCE // RAYS)
+    for first in range(0, len(points), step):
+        chosen = slice(first, first + step)
+        directions = _around(turned[chosen], np.arange(first, first + len(points[chosen])))
+        origins = np.repeat(points[chosen], RAYS, axis=0)
+        found = light_hits(
+            tree.record,
+            np.ascontiguousarray(origins, np.float32),
+            np.ascontiguousarray(directions, np.float32),
+            threads=thread_count(),
+        )
+        # Where a normal leans, a ray may begin below its own triangle: it does not count.
+        own = (
+            np.einsum("rx,rx->r", directions, np.repeat(flat[owners[chosen]], RAYS, axis=0)) <= 0.0
+        )
+        met = ((found.triangle >= 0) & ~own).reshape(-1, RAYS).sum(axis=1)
+        shares[chosen] = met / np.maximum(RAYS - own.reshape(-1, RAYS).sum(axis=1), 1)
+    return shares
+
+
+def _around(normals: Doubles, numbers: NDArray[np.intp]) -> Doubles:
+    """Return (P * RAYS, 3) directions about normals, with the density of the cosine."""
+    index = np.arange(RAYS)
+    # Each point turns the pattern about its normal by its own angle: what remains is noise.
+    turn = np.modf(numbers[:, None] * 0.6180339887498949)[0]
+    angle = 2.0 * np.pi * (np.modf(index * 0.7548776662466927)[0] + turn)
+    height = np.sqrt((index + 0.5) / RAYS)
+    beside = np.sqrt(1.0 - height * height)
+    sign = np.where(normals[:, 2] < 0.0, -1.0, 1.0)
+    x, y, z = normals.T
+    # Duff et al. 2017, "Building an orthonormal basis, revisited".
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    across = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x], axis=1)
+    along = np.stack([b, sign + y * y * a, -y], axis=1)
+    directions = (
+        (beside * np.cos(angle))[..., None] * across[:, None]
+        + (beside * np.sin(angle))[..., None] * along[:, None]
+        + np.broadcast_to(height[:, None], (len(normals), RAYS, 1)) * normals[:, None]
+    )
+    return np.asarray(directions.reshape(-1, 3))
+
+
+def _fitted(shares: Doubles, vertices: NDArray[np.int64], weights: Doubles, count: int) -> Doubles:
+    """Return (V,) what interpolates to the shares: Landweber's iteration, scaled by rows' sums.
+
+    What is hidden is seldom seen, and counts less: a board below keys is as dark as between them.
+    """
+    counts = np.maximum(1.0 - shares, LEAST_WEIGHT)
+    places, by = vertices.ravel(), weights * counts[:, None]
+    known = np.maximum(np.bincount(places, by.ravel(), count), 1e-12)
+    fitted = np.zeros(count)
+    for _ in range(ROUNDS):
+        missing = shares - (fitted[vertices] * weights).sum(axis=1)
+        step = np.bincount(places, (by * missing[:, None]).ravel(), count)
+        fitted += step / known
+    return np.asarray(np.clip(fitted, 0.0, 1.0))

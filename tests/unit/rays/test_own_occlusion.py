@@ -1,0 +1,75 @@
+"""How much models hide of their own surface, by arithmetic."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sailenv_ros.assets.primitives import Primitives
+from sailenv_ros.rays import own_occlusion
+from sailenv_ros.rays.own_occlusion import hidden_shares
+from sailenv_ros.types.model import Material, Mesh, Model, ModelPart
+from tests.support.curved_meshes import bowl, sheet
+
+
+@pytest.fixture(autouse=True)
+def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
+
+
+def model_of(*meshes: Mesh, **material: object) -> Model:
+    look = Material(**material)  # type: ignore[arg-type]
+    return Model(name="m", parts=tuple(ModelPart(mesh=m, material=look) for m in meshes))
+
+
+def board(width: int, steep: bool) -> Mesh:
+    """Make one of two boards that meet at the y axis at a right angle, 40 m long and 20 m wide."""
+    along, across = np.meshgrid(
+        np.linspace(-20.0, 20.0, 9), np.linspace(0.0, 20.0, width), indexing="ij"
+    )
+    zero = np.zeros_like(along)
+    points = np.stack([zero, along, across] if steep else [across, along, zero], axis=-1)
+    normal = (1.0, 0.0, 0.0) if steep else (0.0, 0.0, 1.0)
+    return sheet(points, np.broadcast_to(normal, points.shape).copy())
+
+
+def test_what_bulges_hides_nothing() -> None:
+    """Of a cube and a ball all light arrives."""
+    for name in ("cube", "sphere"):
+        assert all((part == 0.0).all() for part in hidden_shares(Primitives().load(name).model))
+
+
+def test_half_of_the_light_arrives_in_half_a_sphere() -> None:
+    """Inside of a sphere each part is seen by its share of the area, from everywhere."""
+    (hidden,) = hidden_shares(model_of(bowl()))
+    assert np.abs(hidden.mean() - 0.5) < 0.01
+    assert np.abs(hidden - 0.5).max() < 0.08
+
+
+@pytest.mark.parametrize("width", [2, 30])
+def test_a_board_at_a_right_angle_takes_half_beside_it(width: int) -> None:
+    """Near the corner an endless board takes half; of large triangles the corners say the rest."""
+    lying, standing = hidden_shares(model_of(board(width, False), board(width, True)))
+    middle = lying.reshape(9, width)[4]
+    assert abs(middle[0] - 0.5) < 0.1
+    assert middle[-1] < 0.25
+    assert np.allclose(lying, standing, atol=0.08)
+
+
+def test_glass_hides_nothing() -> None:
+    """What is seen through is neither dark itself nor darkens what it holds."""
+    clear = model_of(bowl(), alpha="blend", base_colour=(1.0, 1.0, 1.0, 0.1)).parts[0]
+    inner = replace(model_of(bowl()).parts[0], mesh=Primitives().load("cube").model.parts[0].mesh)
+    found = hidden_shares(Model(name="m", parts=(clear, inner)))
+    assert all((part == 0.0).all() for part in found)
+
+
+def test_what_was_found_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another process reads what the first one found, byte for byte."""
+    (made,) = hidden_shares(model_of(bowl()))
+    monkeypatch.setattr(own_occlusion, "light_hits", None)
+    (kept,) = hidden_shares(model_of(bowl()))
+    assert made.tobytes() == kept.tobytes()
