@@ -8,6 +8,7 @@ between which it is interpolated. Glass hides nothing.
 
 from __future__ import annotations
 
+from hashlib import blake2b
 from typing import TypeAlias
 
 import numpy as np
@@ -15,11 +16,11 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.library import native_library
 from sailenv_ros.native.ray_kernels import light_hits
-from sailenv_ros.rays.model_triangles import triangles_of
+from sailenv_ros.rays.model_triangles import ModelTriangles, triangles_of
 from sailenv_ros.rays.triangle_tree import triangle_tree
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.system.threads import thread_count
-from sailenv_ros.types.digests import model_digest, once
+from sailenv_ros.types.digests import add_array, once
 from sailenv_ros.types.model import Model
 
 __all__ = ["arriving_share", "hidden_shares"]
@@ -41,6 +42,9 @@ ROUNDS = 8
 LEAST_WEIGHT = 0.02
 """Of what is hidden altogether, in the fit."""
 
+STIFFNESS = 4.0
+"""Vertices that fewer points than this tell of hardly follow the noise of their rays."""
+
 LIFT = 1e-3
 """Of a point from its surface, as a share of the model's size; rays begin there."""
 
@@ -51,13 +55,25 @@ _RAYS_AT_ONCE = 1 << 20
 def hidden_shares(model: Model) -> tuple[Floats, ...]:
     """Return which share of the light from around a model takes from its own surface.
 
+    Materials count by what is opaque alone, so painted models share what was found.
+
     Returns
     -------
     tuple of (V,) float32
         Of the vertices of each part, 0 to 1; 0 of glass, and of what nothing hides.
     """
-    key = model_digest(model), native_library().digest
-    made = cached_arrays("hidden", key, lambda: _arrays(model), code=code_digest("rays"))
+    triangles = triangles_of(model)
+    digest = blake2b(native_library().digest.encode(), digest_size=16)
+    for array in (triangles.corners, triangles.normals, triangles.passes == 0.0):
+        add_array(digest, array)
+    for part in model.parts:
+        add_array(digest, part.mesh.triangles)
+    made = cached_arrays(
+        "hidden",
+        [digest.digest()],
+        lambda: _arrays(model, triangles),
+        code=code_digest("rays"),
+    )
     return tuple(made[f"part_{number}"] for number in range(len(model.parts)))
 
 
@@ -73,16 +89,11 @@ def arriving_share(hidden: Doubles, albedo: Doubles) -> Doubles:
     return np.asarray(share * np.maximum((third * share + second) * share + first, 1.0))
 
 
-def _arrays(model: Model) -> dict[str, Floats]:
-    triangles = triangles_of(model)
-    counts = [len(part.mesh.positions) for part in model.parts]
-    firsts = np.cumsum([0, *counts])
-    vertices = np.concatenate(
-        [
-            part.mesh.triangles.astype(np.int64) + k
-            for part, k in zip(model.parts, firsts, strict=False)
-        ]
-    )
+def _arrays(model: Model, triangles: ModelTriangles) -> dict[str, Floats]:
+    meshes = [part.mesh for part in model.parts]
+    firsts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
+    own = [mesh.triangles + first for mesh, first in zip(meshes, firsts[:-1], strict=True)]
+    vertices = np.concatenate([np.zeros((0, 3), np.int64), *own])
     solid = triangles.passes == 0.0
     hidden = np.zeros(firsts[-1])
     if solid.any():
@@ -119,6 +130,7 @@ def _hidden_at(
     size = float(np.linalg.norm(tree.high - tree.low))
     middle = corners.mean(axis=1, keepdims=True)
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    flat *= np.where((flat * normals.mean(axis=1)).sum(axis=1) < 0.0, -1.0, 1.0)[:, None]
     flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-30)
     # A little inwards from the edges, where a neighbour may stand on end.
     inner = middle + 0.98 * (corners - middle)
@@ -177,9 +189,10 @@ def _fitted(shares: Doubles, vertices: NDArray[np.int64], weights: Doubles, coun
     counts = np.maximum(1.0 - shares, LEAST_WEIGHT)
     places, by = vertices.ravel(), weights * counts[:, None]
     known = np.maximum(np.bincount(places, by.ravel(), count), 1e-12)
-    fitted = np.zeros(count)
+    fitted, trust = np.zeros(count), np.ones(count)
     for _ in range(ROUNDS):
         missing = shares - (fitted[vertices] * weights).sum(axis=1)
         step = np.bincount(places, (by * missing[:, None]).ravel(), count)
-        fitted += step / known
+        fitted += trust * step / known
+        trust = known / (known + STIFFNESS)
     return np.asarray(np.clip(fitted, 0.0, 1.0))

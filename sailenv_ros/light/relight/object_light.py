@@ -147,16 +147,19 @@ class ObjectLighting:
         near : sequence of PlacedObject
             What else can move and stands near enough to count.
         quality : Quality
+        shading : bool
+            Whether the object's own shadow counts on what it faces from near: for what it sends
+            back there.
         """
         world = self.world.with_more([self.placed(one) for one in near])
         positions, normals = _placed_points(
             thing, *self._points.of(thing.model, quality.object_points)
         )
-        solid = self._scene.shape_of(thing.model, thing.scale, None)
-        pose = thing.world_from_body
         own = None
         if shading:
-            own, _ = ray_instances([PlacedInstance(solid, pose, None, None, True, True)])
+            solid = self._scene.shape_of(thing.model, thing.scale, None)
+            alone = PlacedInstance(solid, thing.world_from_body, None, None, True, True)
+            own, _ = ray_instances([alone])
         bounced, direct, weights = self._gathered(world, own, positions, normals, quality)
         axes = thing.world_from_body[:3, :3].T
         fit = _fit(positions, normals, weights, axes)

@@ -165,8 +165,7 @@ Gathered gather_whole(const RayScene& s, const CosineRays& rays, const PatchQuer
         near += nearness_of(hit.t);
         if (q.own != nullptr && hit.triangle >= 0 && hit.front &&
             hit.t < OWN_REACH * q.own->sphere[3]) {
-            const uint32_t next =
-                (number * static_cast<uint32_t>(q.rays) + static_cast<uint32_t>(m));
+            const uint32_t next = number * static_cast<uint32_t>(q.rays) + static_cast<uint32_t>(m);
             if (!gets_light(r, hit, *q.own, next)) continue;
         }
         backs += !add_seen(s, hit, r, s.after, each, sum);
