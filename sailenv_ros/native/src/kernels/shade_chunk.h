@@ -103,7 +103,7 @@ struct TracedRow {
     int32_t y = -9;
     int32_t id[CHUNK];
     float weight[CHUNK];
-    Vectors sum, normal;
+    Vectors sum, normal, point;
 };
 
 // Where a chunk's pixels lie, and what rays of others met.

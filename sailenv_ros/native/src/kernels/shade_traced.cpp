@@ -49,10 +49,11 @@ constexpr float USUAL_ANGLE = 0.004f;
 // wider it is; those around share what these meet. Where much is mirrored sharply, each pixel has
 // its own.
 constexpr int32_t LOBE = 16, SHARED_RAYS = 4, OWN_RAYS = 2;
-// Rays of a pixel of a rough surface above which none of that surface has looked, and share that
-// counts of what the row above met.
+// Rays of a pixel of a rough surface above which none of that surface has looked; share that counts
+// of what the row above met, at most, and how far from there a third of it is left: what stands
+// NEAR_M away is mirrored by a spot of that size.
 constexpr int32_t FIRST_RAYS = 8;
-constexpr float KEPT_SHARE = 0.87f;
+constexpr float KEPT_SHARE = 0.87f, KEPT_M = 0.05f;
 // Pixels on either side that do for one where those that should look are of something else.
 constexpr int32_t BESIDE = 3;
 // Roughness squared over the angle between pixels' rays, from where on every second pixel, every
@@ -280,6 +281,7 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
     memset(pixels.row.weight, 0, sizeof pixels.row.weight);
     memset(&pixels.row.sum, 0, sizeof pixels.row.sum);
     memcpy(&pixels.row.normal, &c.normal, sizeof c.normal);
+    memcpy(&pixels.row.point, &c.point, sizeof c.point);
     memcpy(pixels.row.id, c.id, sizeof c.id);
     for (int32_t i = 0; i < c.count; i++) {
         if (!(pixels.share[i] > 0.0f)) continue;
@@ -512,8 +514,11 @@ void add_rows_above(const Chunk& c, const TracedRow& last, TracedPixels& pixels)
     for (int32_t i = 0; i < c.count; i++) {
         if (pixels.ray_count[i] == 0 || pixels.step[i] <= 2 || !shares(c, i, last, i)) continue;
         const vec3 sum = vector_at(pixels.row.sum, i);
-        put(pixels.row.sum, i, sum + vector_at(last.sum, i) * KEPT_SHARE);
-        pixels.row.weight[i] += KEPT_SHARE * last.weight[i];
+        const vec3 apart = vector_at(pixels.row.point, i) - vector_at(last.point, i);
+        const float away = std::sqrt(dot(apart, apart)) * (1.0f / KEPT_M);
+        const float kept = min(KEPT_SHARE, 1.0f / (1.0f + away + 0.5f * away * away));
+        put(pixels.row.sum, i, sum + vector_at(last.sum, i) * kept);
+        pixels.row.weight[i] += kept * last.weight[i];
     }
 }
 
