@@ -8,14 +8,28 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sailenv_ros.render.contract import RenderRequest
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.model import Material, Model, ModelPart
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.render.conftest import Render
 from tests.support.picture import linear
-from tests.support.tiny_scenes import Thing, camera_at, model_of, snapshot_of, wall_mesh
+from tests.support.tiny_scenes import (
+    FORWARD,
+    Thing,
+    camera_at,
+    mesh_of,
+    model_of,
+    snapshot_of,
+    wall_mesh,
+)
 
 AHEAD = Pose((3.0, 0.0, 0.0))
 WALL = wall_mesh(60.0, 60.0)
+RED, GREEN = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 HALF = (0.5, 0.5, 0.5)
 UNIFORM = Environment(sky_zenith=HALF, sky_horizon=HALF, sky_ground=HALF)
 BLACK = Environment(sky_zenith=(0, 0, 0), sky_horizon=(0, 0, 0), sky_ground=(0, 0, 0))
@@ -212,3 +226,57 @@ def test_lights_beyond_what_is_drawn_are_told(
         render(scene, camera_at(), "rgb")
     said = [r.getMessage() for r in caplog.records if "lights" in r.getMessage()]
     assert said == ["only the 16 strongest of 20 lights are drawn"]
+
+
+def sheets(yaw_deg: float, *, reverse: bool) -> WorldSnapshot:
+    """A red sheet that faces -x and a green one at the same place that faces +x, of two sides."""
+    corners = [(0.0, y, z) for y in np.linspace(-2, 2, 6) for z in np.linspace(-1.7, 1.7, 5)]
+    uvs = [(0.0, 0.0)] * len(corners)
+    squares = [(k, k + 1, k + 6, k + 5) for row in range(5) for k in range(5 * row, 5 * row + 4)]
+    faces = [face for a, b, c, d in squares for face in ((a, b, c), (a, c, d))]
+    parts = []
+    for x, turned, colour in ((-1, faces, RED), (1, [f[::-1] for f in faces], GREEN)):
+        mesh = mesh_of(corners, [(x, 0, 0)] * len(corners), uvs, turned)
+        look = Material(base_colour=(*colour, 1.0), double_sided=True)
+        parts.append(ModelPart(mesh=mesh, material=look))
+    both = Model(name="both", parts=tuple(parts[::-1] if reverse else parts))
+    pose = Pose.from_rpy_deg((2.0, 0.0, 0.0), (0.0, 0.0, yaw_deg))
+    return snapshot_of([Thing(both, pose)], lights=(), environment=UNIFORM)
+
+
+def assert_faces_the_eye(render: Render, camera: Camera) -> None:
+    for reverse in (False, True):
+        for yaw, wanted in ((0.0, RED), (25.0, RED), (180.0, GREEN), (205.0, GREEN)):
+            views = render(sheets(yaw, reverse=reverse), camera, "albedo", "instance")
+            found = views["albedo"][views["instance"] > 0]
+            assert len(found) > 300
+            assert (np.abs(found - wanted) < 0.01).all()
+
+
+def test_of_two_sheets_back_to_back_the_one_that_faces_the_eye_is_seen(render: Render) -> None:
+    """Models of furniture have walls without thickness, whose inner side is dark."""
+    assert_faces_the_eye(render, camera_at())
+
+
+@pytest.mark.parametrize(
+    "lens",
+    [
+        {"distortion_model": "orthographic", "fx_px": 20.0, "fy_px": 20.0},
+        {
+            "distortion_model": "equidistant",
+            "distortion": (0.0, 0.0, 0.0, 0.0),
+            "fx_px": 30.0,
+            "fy_px": 30.0,
+            "max_angle_deg": 95.0,
+        },
+    ],
+    ids=["parallel", "fisheye"],
+)
+def test_so_it_is_through_other_lenses(native: NativeRenderer, lens: dict[str, Any]) -> None:
+    """Rays that are parallel, and those of a fisheye."""
+
+    def render(snapshot: WorldSnapshot, camera: Camera, *views: str) -> dict[str, NDArray[Any]]:
+        return dict(native.render(RenderRequest(snapshot, camera, views)).views)
+
+    camera = Camera(intrinsics=CameraIntrinsics(width=96, height=72, **lens), pose=FORWARD)
+    assert_faces_the_eye(render, camera)

@@ -27,6 +27,9 @@ GL_CLIP_DISTANCE0 = 0x3000
 
 _VERTEX_FORMAT = {"in_position": "3f", "in_normal": "3f", "in_uv": "2f", "in_light_uv": "2f"}
 _PADDING = {"in_position": "3x4", "in_normal": "3x4", "in_uv": "2x4", "in_light_uv": "2x4"}
+_SIDES = (("front", (0.0, 8.0)), ("back", (0.0, 0.0)))
+"""What is culled, and by how much what is drawn lies farther off: of two sheets back to back that
+which faces the eye is seen, as in the native renderer."""
 
 
 def written_views() -> tuple[str, ...]:
@@ -155,7 +158,7 @@ class GeometryPass:
         targets.framebuffer.use()
         # Nothing hit: infinitely far, instance 0. The other attachments are not read there.
         targets.framebuffer.clear(float("inf"), 0.0, 0.0, 0.0, depth=1.0)
-        context.enable_only(moderngl.DEPTH_TEST)
+        context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         context.enable_direct(GL_DEPTH_CLAMP)
         context.enable_direct(GL_CLIP_DISTANCE0)
         # The projection turns the picture upside down, so that row 0 of OpenGL's window is the
@@ -169,14 +172,14 @@ class GeometryPass:
                 program = self._program(batch.kind, targets, half_pixels)
                 set_lens(program, intrinsics)
                 materials.bind(program, batch.kind.maps)
-                if batch.kind.double_sided:
-                    context.disable(moderngl.CULL_FACE)
-                else:
-                    context.enable(moderngl.CULL_FACE)
                 by_corner = _by_corner(batch.kind, targets)
-                array = bound(context, program, geometry, self._index_buffer, by_corner=by_corner)
-                issue(program, array, draws, batch, lies)
+                indices = self._index_buffer
+                for culled, offset in _SIDES if batch.kind.double_sided else _SIDES[1:]:
+                    context.cull_face, context.polygon_offset = culled, offset
+                    array = bound(context, program, geometry, indices, by_corner=by_corner)
+                    issue(program, array, draws, batch, lies)
         finally:
+            context.cull_face, context.polygon_offset = "back", (0.0, 0.0)
             context.disable_direct(GL_CLIP_DISTANCE0)
             context.disable_direct(GL_DEPTH_CLAMP)
             context.front_face = "ccw"

@@ -143,7 +143,8 @@ float up(double x) { return std::nextafter(static_cast<float>(x), 1e30f); }
 struct PlaceFunction {
     float a, b, c;
 
-    explicit PlaceFunction(const float* f) : a(f[0]), b(f[1]), c(f[2]) {}
+    explicit PlaceFunction(const float* f, float share = 1.0f)
+        : a(f[0] * share), b(f[1] * share), c(f[2] * share) {}
     LANES_METHOD f8 at(f8 x, f8 y) const { return a * x + (b * y + c); }
 };
 
@@ -197,7 +198,7 @@ struct LensDrawing {
           edge0(t.edge),
           edge1(t.edge + 3),
           edge2(t.edge + 6),
-          nearness(t.inverse_depth),
+          nearness(t.inverse_depth, seen == nullptr ? 1.0f : nearness_share(t, false)),
           greatest(p.greatest_inverse_depth),
           face(t.face),
           tag(splat(static_cast<int32_t>(number))),

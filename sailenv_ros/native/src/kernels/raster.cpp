@@ -414,7 +414,8 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
                    float* inverse_depth) {
     const int32_t y0 = t.y0 > first_row ? t.y0 : first_row;
     const int32_t y1 = t.y1 < last_row ? t.y1 : last_row;
-    const float a0 = t.edge[0], a1 = t.edge[3], a2 = t.edge[6], an = t.inverse_depth[0];
+    const float share = visible == nullptr ? 1.0f : nearness_share(t, p.drawn == Drawn::PARALLEL);
+    const float a0 = t.edge[0], a1 = t.edge[3], a2 = t.edge[6], an = t.inverse_depth[0] * share;
     const float least0 = least_inside(t.edge), least1 = least_inside(t.edge + 3),
                 least2 = least_inside(t.edge + 6);
     const bool wide = t.x1 - t.x0 >= 16;
@@ -431,7 +432,7 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
         const float y = FINE ? 0.5f * static_cast<float>(row - 1) : static_cast<float>(row);
         const float c0 = t.edge[1] * y + t.edge[2], c1 = t.edge[4] * y + t.edge[5],
                     c2 = t.edge[7] * y + t.edge[8],
-                    cn = t.inverse_depth[1] * y + t.inverse_depth[2];
+                    cn = (t.inverse_depth[1] * y + t.inverse_depth[2]) * share;
         int32_t first = t.x0, last = t.x1;
         if (wide) {
             float low = static_cast<float>(first), high = static_cast<float>(last);

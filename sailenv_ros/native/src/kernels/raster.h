@@ -42,6 +42,15 @@ LANES_INLINE float least_inside(const float* edge) {
     return own ? 0.0f : 1.1754944e-38f;
 }
 
+// How much of a triangle's nearness counts where surfaces lie in one another: of two sheets back to
+// back the one that faces the eye is seen, as by rays (`meet_shape`). A few bits more than
+// rounding.
+LANES_INLINE float nearness_share(const Triangle& t, bool parallel) {
+    constexpr float FARTHER = 4e-6f;
+    if (t.back != 1 || t.masked != 0) return 1.0f;
+    return parallel ? 1.0f + FARTHER : 1.0f - FARTHER;
+}
+
 // What a frame knows of an instance.
 struct InstanceFrame {
     double eye_from_object[12];  // rows; in a shadow map: pixel, pixel, depth
