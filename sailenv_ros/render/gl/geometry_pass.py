@@ -28,8 +28,8 @@ GL_CLIP_DISTANCE0 = 0x3000
 _VERTEX_FORMAT = {"in_position": "3f", "in_normal": "3f", "in_uv": "2f", "in_light_uv": "2f"}
 _PADDING = {"in_position": "3x4", "in_normal": "3x4", "in_uv": "2x4", "in_light_uv": "2x4"}
 _SIDES = (("front", (0.0, 8.0)), ("back", (0.0, 0.0)))
-"""What is culled, and by how much what is drawn lies farther off: of two sheets back to back that
-which faces the eye is seen, as in the native renderer."""
+"""Sides to cull, and by how much the others lie farther off: of two sheets back to back the one
+that faces the eye is seen, as natively."""
 
 
 def written_views() -> tuple[str, ...]:
