@@ -13,10 +13,26 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
-__all__ = ["register", "textured"]
+__all__ = ["OwnSurface", "register", "textured"]
 
 
-class LitSurface(mi.BSDF):  # type: ignore[misc,name-defined]
+class OwnSurface(mi.BSDF):  # type: ignore[misc,name-defined]
+    """A BSDF of ours: it has a texture `base`, and tells value and density in `eval_pdf`."""
+
+    def eval(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
+        """Return the BSDF times the cosine."""
+        return self.eval_pdf(ctx, si, wo, active)[0]
+
+    def pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
+        """Return the density with which `sample` chooses a direction."""
+        return self.eval_pdf(ctx, si, wo, active)[1]
+
+    def eval_diffuse_reflectance(self, si: Any, active: Any = True) -> Any:
+        """Return the colour that guides the denoiser."""
+        return self.base.eval(si, active)
+
+
+class LitSurface(OwnSurface):
     """Its parameters are textures: ``base_color``, ``metallic``, ``roughness``."""
 
     def __init__(self, props: Any) -> None:
@@ -48,14 +64,6 @@ class LitSurface(mi.BSDF):  # type: ignore[misc,name-defined]
         active &= bs.pdf > 0.0
         return bs, dr.select(active, value / dr.maximum(bs.pdf, 1e-12), 0.0)
 
-    def eval(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-        """Return the BSDF times the cosine."""
-        return self.eval_pdf(ctx, si, wo, active)[0]
-
-    def pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-        """Return the density with which `sample` chooses a direction."""
-        return self.eval_pdf(ctx, si, wo, active)[1]
-
     def eval_pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
         """Return both."""
         diffuse, f0, alpha = self._finish(si, active)
@@ -64,10 +72,6 @@ class LitSurface(mi.BSDF):  # type: ignore[misc,name-defined]
         share = self._glossy_share(diffuse, f0)
         value, pdf = self._lobes(wi, above, diffuse, f0, alpha, share)
         return dr.select(active, value, 0.0), dr.select(active, pdf, 0.0)
-
-    def eval_diffuse_reflectance(self, si: Any, active: Any = True) -> Any:
-        """Return the colour that guides the denoiser."""
-        return self.base.eval(si, active)
 
     def _finish(self, si: Any, active: Any) -> tuple[Any, Any, Any]:
         base = self.base.eval(si, active)

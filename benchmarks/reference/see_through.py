@@ -12,12 +12,12 @@ from typing import Any
 
 import drjit as dr
 import mitsuba as mi
-from lit_surface import textured
+from lit_surface import OwnSurface, textured
 
 __all__ = ["register"]
 
 
-class SeeThrough(mi.BSDF):  # type: ignore[misc,name-defined]
+class SeeThrough(OwnSurface):
     """Its parameters are textures or colours; ``faces`` is 0 of cloth, which mirrors nothing."""
 
     def __init__(self, props: Any) -> None:
@@ -58,16 +58,8 @@ class SeeThrough(mi.BSDF):  # type: ignore[misc,name-defined]
         value = dr.select(passes & ~mirrors, self.tint.eval(si, active), value)
         return bs, dr.select(active & (bs.pdf > 0.0), value, 0.0)
 
-    def eval(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-        """Return what scatters, times the cosine."""
-        return self.eval_pdf(ctx, si, wo, active)[0]
-
-    def pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-        """Return the density with which `sample` scatters into a direction."""
-        return self.eval_pdf(ctx, si, wo, active)[1]
-
     def eval_pdf(self, ctx: Any, si: Any, wo: Any, active: Any = True) -> Any:
-        """Return both."""
+        """Return what scatters, times the cosine, and the density of its direction."""
         _, _, covered = self._shares(si, active)
         cosine = dr.select(si.wi.z * wo.z > 0.0, dr.abs(wo.z), 0.0)
         pdf = dr.select(active, covered * cosine / dr.pi, 0.0)
@@ -77,10 +69,6 @@ class SeeThrough(mi.BSDF):  # type: ignore[misc,name-defined]
         """Return the share of light that goes straight through."""
         _, clear, _ = self._shares(si, active)
         return dr.select(active, clear * self.tint.eval(si, active), 0.0)
-
-    def eval_diffuse_reflectance(self, si: Any, active: Any = True) -> Any:
-        """Return the colour that guides the denoiser."""
-        return self.base.eval(si, active)
 
     def _shares(self, si: Any, active: Any) -> tuple[Any, Any, Any]:
         """Return which shares are mirrored, let through and scattered; 1 in all."""

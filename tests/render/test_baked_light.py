@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sailenv_ros.rays.own_occlusion import arriving_share
+from sailenv_ros.rays.self_occlusion import arriving_share
 from sailenv_ros.render.contract import RenderBackend, RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight, SunEdges
@@ -126,7 +126,7 @@ def test_each_side_of_what_can_move_is_lit_by_its_own_place(render: Render) -> N
 
 
 def test_where_an_object_hides_itself_less_light_arrives(render: Render) -> None:
-    """In half a sphere a half does; between its parts light goes to and fro ."""
+    """In half a sphere a half does; between its parts light goes to and fro."""
     inside = model_of(bowl(), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0)
     terms = np.zeros((1, LIGHT_TERMS, 3), np.float32)
     terms[0, 0] = 0.8

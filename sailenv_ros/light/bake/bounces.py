@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.ray_patterns import TURN
 from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.native.surface_light import hand_on, patch_sources
+from sailenv_ros.rays.ray_patterns import TURN
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
 __all__ = ["Patches", "bounced_radiance", "patches_of"]

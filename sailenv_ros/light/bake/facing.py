@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.crossed_layers import above_crossed_layers
 from sailenv_ros.light.bake.layout import Layout
-from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.light.bake.texels import Texels, rasterised
 from sailenv_ros.light.bake.worker_pool import in_chunks
 from sailenv_ros.rays.light_rays import RayScene
+from sailenv_ros.rays.ray_patterns import fibonacci_sphere
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
 __all__ = ["lit_texels"]

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.back_to_back import BackToBack
 from sailenv_ros.light.bake.direct import Points
-from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
 from sailenv_ros.native.bake_types import Emitters, LitPoints, MappedTriangles, SkyWindows
 from sailenv_ros.native.gather_kernels import (
     emitter_rays,
@@ -28,6 +27,7 @@ from sailenv_ros.native.gather_kernels import (
 from sailenv_ros.native.ray_kernels import LightHits
 from sailenv_ros.native.surface_light import add_radiance_met, mean_radiance_met, met_texels
 from sailenv_ros.rays.light_rays import NEVER, RayScene
+from sailenv_ros.rays.ray_patterns import low_discrepancy_points
 
 __all__ = ["BACK", "NOTHING", "Looks", "Seen", "Surroundings", "seen_from"]
 

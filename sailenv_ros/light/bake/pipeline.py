@@ -31,7 +31,6 @@ from sailenv_ros.light.bake.light_probes import (
     probe_positions,
     straight_light,
 )
-from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
 from sailenv_ros.light.bake.reflectance import albedo_of, emission_of
 from sailenv_ros.light.bake.sampling import tile_shift
 from sailenv_ros.light.bake.settings import BakeSettings, drafted
@@ -42,6 +41,7 @@ from sailenv_ros.light.bake.sun_edges import sun_edges
 from sailenv_ros.light.bake.visibility import probe_visibility, visible_triangles
 from sailenv_ros.native.bake_types import SkyWindows
 from sailenv_ros.rays.light_rays import NEVER, RayScene
+from sailenv_ros.rays.ray_patterns import low_discrepancy_points
 from sailenv_ros.rays.static_geometry import static_geometry_of
 from sailenv_ros.types.baked_light import BakedLight, LightLayer, SunEdges
 from sailenv_ros.types.lights import Light

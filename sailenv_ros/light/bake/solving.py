@@ -17,11 +17,11 @@ from sailenv_ros.light.bake.bounces import Patches, bounced_radiance
 from sailenv_ros.light.bake.denoise import stand_ins
 from sailenv_ros.light.bake.direct import Points, arriving, visible_range
 from sailenv_ros.light.bake.gather import BACK, Seen, Surroundings, seen_from
-from sailenv_ros.light.bake.ray_patterns import in_turns, low_discrepancy_points
 from sailenv_ros.light.bake.sampling import pass_shift
 from sailenv_ros.light.bake.settings import INSIDE_SHARE, BakeSettings
 from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.light.bake.worker_pool import in_chunks
+from sailenv_ros.rays.ray_patterns import in_turns, low_discrepancy_points
 from sailenv_ros.types.lights import Light
 
 __all__ = ["Samples", "SolvedLight", "Solver", "Stages"]

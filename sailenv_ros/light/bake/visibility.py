@@ -13,9 +13,9 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from sailenv_ros.light.bake.back_to_back import back_to_back_faces
-from sailenv_ros.light.bake.ray_patterns import fibonacci_sphere
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.rays.light_rays import RayScene
+from sailenv_ros.rays.ray_patterns import fibonacci_sphere
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
 __all__ = ["ProbeVisibility", "visible_triangles", "probe_visibility"]

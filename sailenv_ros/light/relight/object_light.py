@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.light_shapes import light_record
-from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points, sequence_points
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import QUICK, Quality
@@ -32,6 +31,8 @@ from sailenv_ros.light.relight.sent_light import sent_by_light, sent_by_probes
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import direct_light_delta, gather_change
 from sailenv_ros.rays.model_triangles import triangles_of
+from sailenv_ros.rays.ray_patterns import low_discrepancy_points, sequence_points
+from sailenv_ros.rays.self_occlusion import LEAST_WEIGHT
 from sailenv_ros.rays.static_geometry import PlacedModel
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
 from sailenv_ros.types.geometry import invert
@@ -54,8 +55,6 @@ STIFFNESS = np.array([0.0] + 3 * [1.3] + 24 * [0.26])
 HIDDEN_M = 0.1
 """Points that see nothing farther than a few centimetres are seldom seen, and count less: by the
 harmonic mean of the distances of what they see over this [m]."""
-
-LEAST_WEIGHT = 0.02
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

@@ -15,11 +15,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.light_probes import probe_positions
 from sailenv_ros.light.bake.light_shapes import light_record
-from sailenv_ros.light.bake.ray_patterns import (
-    fibonacci_sphere,
-    low_discrepancy_points,
-    sequence_points,
-)
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.layer_updates import DirectDelta, LayerUpdates
@@ -34,6 +29,11 @@ from sailenv_ros.native.relight_kernels import (
     gather_probe_change,
     light_of_probes,
     smooth_change,
+)
+from sailenv_ros.rays.ray_patterns import (
+    fibonacci_sphere,
+    low_discrepancy_points,
+    sequence_points,
 )
 from sailenv_ros.types.baked_light import BakedLight, LightChart
 from sailenv_ros.types.geometry import invert

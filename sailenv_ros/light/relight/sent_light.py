@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sailenv_ros.light.relight.baked_scene import albedo_of_model
 from sailenv_ros.native.relight_kernels import light_of_probes
 from sailenv_ros.rays.model_triangles import triangles_of
-from sailenv_ros.rays.own_occlusion import arriving_share, hidden_shares
+from sailenv_ros.rays.self_occlusion import LEAST_WEIGHT, arriving_share, vertex_occlusion
 from sailenv_ros.types.baked_light import ObjectLight, ProbeGrid
 from sailenv_ros.types.digests import once
 from sailenv_ros.types.model import Model
@@ -100,10 +100,10 @@ def _given_back(model: Model) -> Floats:
     """
     albedo = albedo_of_model(model)
     every = triangles_of(model)
-    parts = zip(hidden_shares(model), model.parts, strict=True)
+    parts = zip(vertex_occlusion(model), model.parts, strict=True)
     hidden = np.concatenate([own[part.mesh.triangles].mean(axis=1) for own, part in parts])
     normals = every.normals.mean(axis=1)
-    counts = (every.areas_m2 * np.maximum(1.0 - hidden, 0.02))[:, None]
+    counts = (every.areas_m2 * np.maximum(1.0 - hidden, LEAST_WEIGHT))[:, None]
     counts = counts * np.maximum(np.concatenate([normals, -normals], axis=1), 0.0) ** 2
     shares = arriving_share(hidden[:, None], albedo.astype(np.float64)[None])
     sums = counts.sum(axis=0)[:, None]

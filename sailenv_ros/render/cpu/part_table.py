@@ -30,8 +30,8 @@ from sailenv_ros.render.cpu.texture_store import TextureStore
 from sailenv_ros.render.scene.drawn_meshes import (
     DrawnMesh,
     chart_table,
-    is_shaded,
     meshes_of,
+    occludes_itself,
     owner_of,
     unwrappings,
 )
@@ -185,11 +185,11 @@ class PartTable:
             if not drawn.model.parts:
                 continue
             owner = owner_of(drawn)
-            shaded = is_shaded(drawn, contents)
-            key = (id(drawn.model), id(flat), owner, shaded)
+            occluded = occludes_itself(drawn, contents)
+            key = (id(drawn.model), id(flat), owner, occluded)
             made = models.get(key) or self._models.get(key)
             if made is None:
-                meshes = meshes_of(drawn.model, flat, owner, shaded=shaded)
+                meshes = meshes_of(drawn.model, flat, owner, occluded=occluded)
                 made, is_new = self._make(drawn.model, meshes), True
             models[key] = made
             if owner:

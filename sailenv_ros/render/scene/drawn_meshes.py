@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.rays.own_occlusion import hidden_shares
+from sailenv_ros.rays.self_occlusion import vertex_occlusion
 from sailenv_ros.types.baked_light import Unwrapping
 from sailenv_ros.types.model import Mesh, Model
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents
@@ -24,7 +24,7 @@ __all__ = [
     "corner_sources",
     "corners_of",
     "drawn_meshes",
-    "is_shaded",
+    "occludes_itself",
     "meshes_of",
     "owner_of",
     "unwrappings",
@@ -47,20 +47,20 @@ class DrawnMesh:
         Number of the mesh among its model's parts.
     owner : int
         Id of the instance if its vertices move; 0 for a mesh that all instances share.
-    hidden : (V,) float32 or None
-        See `hidden_shares`; None where nothing is known of it.
+    occlusion : (V,) float32 or None
+        See `vertex_occlusion`; None where nothing is known of it.
     """
 
     mesh: Mesh
     unwrapping: Unwrapping | None
     part: int
     owner: int = 0
-    hidden: NDArray[np.float32] | None = None
+    occlusion: NDArray[np.float32] | None = None
 
     @property
     def key(self) -> tuple[int, int, int, int]:
         """Key that is unique to a drawn mesh while its objects live."""
-        return id(self.mesh), id(self.unwrapping), self.owner, id(self.hidden)
+        return id(self.mesh), id(self.unwrapping), self.owner, id(self.occlusion)
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
@@ -87,8 +87,8 @@ class DrawnMesh:
         if self.unwrapping is not None:
             chosen = self.unwrapping.vertices[self.part]
             result["light_uv"] = self.unwrapping.uvs[self.part]
-        elif self.hidden is not None:
-            result["light_uv"][:, 1] = self.hidden
+        elif self.occlusion is not None:
+            result["light_uv"][:, 1] = self.occlusion
         result["position"] = mesh.positions[chosen]
         result["normal"] = mesh.normals[chosen]
         result["uv"] = mesh.uvs[chosen]
@@ -98,30 +98,30 @@ class DrawnMesh:
 def drawn_meshes(contents: SceneContents) -> list[list[DrawnMesh]]:
     """Return the meshes of each instance's parts, in their order."""
     return [
-        meshes_of(drawn.model, flat, owner_of(drawn), shaded=is_shaded(drawn, contents))
+        meshes_of(drawn.model, flat, owner_of(drawn), occluded=occludes_itself(drawn, contents))
         for drawn, flat in zip(contents.instances, unwrappings(contents), strict=True)
     ]
 
 
 def meshes_of(
-    model: Model, unwrapping: Unwrapping | None, owner: int = 0, *, shaded: bool = False
+    model: Model, unwrapping: Unwrapping | None, owner: int = 0, *, occluded: bool = False
 ) -> list[DrawnMesh]:
     """Return the meshes of a model's parts, in their order; see `DrawnMesh.owner`.
 
     Parameters
     ----------
-    shaded : bool
+    occluded : bool
         Whether what hides itself is darker, where it has no place in a light map and is rigid.
     """
-    told = shaded and unwrapping is None and not owner
-    hidden = hidden_shares(model) if told else (None,) * len(model.parts)
+    told = occluded and unwrapping is None and not owner
+    occlusion = vertex_occlusion(model) if told else (None,) * len(model.parts)
     return [
         DrawnMesh(part.mesh, unwrapping, place, owner, own)
-        for place, (part, own) in enumerate(zip(model.parts, hidden, strict=True))
+        for place, (part, own) in enumerate(zip(model.parts, occlusion, strict=True))
     ]
 
 
-def is_shaded(drawn: DrawnInstance, contents: SceneContents) -> bool:
+def occludes_itself(drawn: DrawnInstance, contents: SceneContents) -> bool:
     """Return whether an instance is lit as what can move is, in a room with baked light."""
     return contents.baked is not None and drawn.outside is None
 

@@ -21,8 +21,9 @@ from benchmarks.reference import scene_export as export
 from benchmarks.reference import tracing
 from benchmarks.reference.compare import VIEWS, _camera
 from benchmarks.reference.parts import Parts, ply_bytes
-from benchmarks.reference.surfaces import bsdf, emitter
+from benchmarks.reference.surfaces import LEAST_CLOTH, bsdf, emitter
 from sailenv_ros.assets.primitives import Primitives
+from sailenv_ros.native.compile import SOURCES
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable, Instance
@@ -340,6 +341,12 @@ def test_what_is_seen_through_covers_as_the_renderer_has_it(
     tint = np.array(described["tint"]["value"]) ** met
     assert tint == pytest.approx(1.0 + 0.36 * (np.array([0.5, 1.0, 0.25]) - 1.0))
     assert described["faces"]["value"][0] == faces
+
+
+def test_cloth_is_as_rough_as_the_law_says() -> None:
+    """Once in the tracer's description, and once in the law."""
+    law = (SOURCES / "kernels" / "light_law.h").read_text()
+    assert f"LEAST_CLOTH = {LEAST_CLOTH}f;" in law
 
 
 def test_what_glows_emits_its_radiance(parts: Parts) -> None:

@@ -88,7 +88,7 @@ def test_annotations_are_those_of_the_definition(size: tuple[int, int]) -> None:
 def test_ambient_visibility_is_that_of_the_definition(
     size: tuple[int, int], share_baked: float
 ) -> None:
-    """With some of the surfaces baked, with all and with none; of others some shadows are."""
+    """Where the light of some of the surfaces is known, of all and of none."""
     rng = np.random.default_rng(size)
     surface = blocky_surface(rng, *size)
     known = (rng.random(65536) < share_baked).astype(np.uint8)

@@ -106,15 +106,21 @@ LIGHT_LAW Real arriving_share(Real hidden, Real albedo) {
     return open * max(((third * open) + second) * open + first, 1.0f);
 }
 
+// How far reflectance rises from that head-on towards 1 where light grazes (Schlick 1994, "An
+// inexpensive BRDF model for physically-based rendering").
+LIGHT_LAW Real schlick_share(Real cosine) {
+    Real grazing = 1.0f - cosine;
+    Real square = grazing * grazing;
+    return square * square * grazing;
+}
+
 // See-through things as rough as this are cloth, and mirror nothing.
 const float LEAST_CLOTH = 0.5f;
 
 // Share of light that a pane mirrors, for the cosine between ray and normal: by Schlick's term for
 // an index of 1.5 at each of its two faces, with all that goes to and fro between these.
 LIGHT_LAW Real pane_reflectance(Real cosine, float roughness) {
-    Real grazing = 1.0f - clamp(cosine, 0.0f, 1.0f);
-    Real square = grazing * grazing;
-    Real once = 0.04f + 0.96f * square * square * grazing;
+    Real once = 0.04f + 0.96f * schlick_share(clamp(cosine, 0.0f, 1.0f));
     return 2.0f * once / (1.0f + once) * (roughness < LEAST_CLOTH ? 1.0f : 0.0f);
 }
 

@@ -54,14 +54,6 @@ LANES_INLINE Vec3x8 analytic_sky(const Light& l, f8 up) {
 // lie at `point`; unit vectors and points in the world frame.
 Vec3x8 light_of_instances(const Light& light, i8 ids, i8 wanted, Vec3x8 normal, Vec3x8 point);
 
-// How far reflectance rises from that head-on towards 1 where light grazes (Schlick 1994, "An
-// inexpensive BRDF model for physically-based rendering").
-template <class T>
-LANES_INLINE T schlick_share(T cosine) {
-    const T grazing = 1.0f - cosine, square = grazing * grazing;
-    return square * square * grazing;
-}
-
 // What shiny surfaces mirror of a room, as `point` says for each; see shaders/reflections.glsl.
 // Points and directions in the world frame.
 Vec3x8 mirrored_room(const Light& light, i8 point, Vec3x8 at, Vec3x8 direction, f8 roughness);

@@ -86,9 +86,7 @@ vec3 reflected_light(Surface s, vec3 towards, vec3 power) {
     float distribution = s.a2 / (PI * spread * spread);
     float visibility = 0.5 / (nl * sqrt(s.nv * s.nv * (1.0 - s.a2) + s.a2) +
                               s.nv * sqrt(nl * nl * (1.0 - s.a2) + s.a2));
-    float grazing = 1.0 - vh;
-    float g2 = grazing * grazing;
-    vec3 fresnel = s.f0 + (1.0 - s.f0) * (g2 * g2 * grazing);
+    vec3 fresnel = s.f0 + (1.0 - s.f0) * schlick_share(vh);
     return power * nl * (s.diffuse * (1.0 - fresnel) / PI + fresnel * distribution * visibility);
 }
 

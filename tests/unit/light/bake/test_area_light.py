@@ -11,8 +11,8 @@ from sailenv_ros.light.bake.area_light import form_factors, solid_angles
 from sailenv_ros.light.bake.direct import Points, arriving
 from sailenv_ros.light.bake.light_probes import straight_light
 from sailenv_ros.light.bake.pipeline import bake
-from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points
 from sailenv_ros.rays.light_rays import RayScene
+from sailenv_ros.rays.ray_patterns import low_discrepancy_points
 from sailenv_ros.rays.static_geometry import static_geometry_of
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light, area_sides

@@ -12,7 +12,6 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.light_shapes import light_record
-from sailenv_ros.light.bake.ray_patterns import sequence_points
 from sailenv_ros.light.relight import object_shadows
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
@@ -26,6 +25,7 @@ from sailenv_ros.light.relight.shadow_maps import PointChanges
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.light.relight.texel_changes import TexelChanges
 from sailenv_ros.native.relight_kernels import gather_change
+from sailenv_ros.rays.ray_patterns import sequence_points
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from sailenv_ros.assets.primitives import Primitives
-from sailenv_ros.rays import own_occlusion
-from sailenv_ros.rays.own_occlusion import hidden_shares
+from sailenv_ros.rays import self_occlusion
+from sailenv_ros.rays.self_occlusion import vertex_occlusion
 from sailenv_ros.types.model import Material, Mesh, Model, ModelPart
 from tests.support.curved_meshes import bowl, sheet
 
@@ -39,12 +39,12 @@ def board(width: int, steep: bool) -> Mesh:
 def test_what_bulges_hides_nothing() -> None:
     """Of a cube and a ball all light arrives."""
     for name in ("cube", "sphere"):
-        assert all((part == 0.0).all() for part in hidden_shares(Primitives().load(name).model))
+        assert all((part == 0.0).all() for part in vertex_occlusion(Primitives().load(name).model))
 
 
 def test_half_of_the_light_arrives_in_half_a_sphere() -> None:
     """Inside of a sphere each part is seen by its share of the area, from everywhere."""
-    (hidden,) = hidden_shares(model_of(bowl()))
+    (hidden,) = vertex_occlusion(model_of(bowl()))
     assert np.abs(hidden.mean() - 0.5) < 0.01
     assert np.abs(hidden - 0.5).max() < 0.08
 
@@ -52,7 +52,7 @@ def test_half_of_the_light_arrives_in_half_a_sphere() -> None:
 @pytest.mark.parametrize("width", [2, 30])
 def test_a_board_at_a_right_angle_takes_half_beside_it(width: int) -> None:
     """Near the corner an endless board takes half; of large triangles the corners say the rest."""
-    lying, standing = hidden_shares(model_of(board(width, False), board(width, True)))
+    lying, standing = vertex_occlusion(model_of(board(width, False), board(width, True)))
     middle = lying.reshape(9, width)[4]
     assert abs(middle[0] - 0.5) < 0.1
     assert middle[-1] < 0.25
@@ -64,23 +64,26 @@ def test_winding_and_emptiness_do_not_matter() -> None:
     mesh = bowl()
     turned = replace(mesh, triangles=mesh.triangles[:, [0, 2, 1]].copy())
     nothing = replace(mesh, triangles=mesh.triangles[:0])
-    plain, (_, other) = hidden_shares(model_of(mesh)), hidden_shares(model_of(nothing, turned))
+    plain, (_, other) = (
+        vertex_occlusion(model_of(mesh)),
+        vertex_occlusion(model_of(nothing, turned)),
+    )
     assert abs(plain[0].mean() - other.mean()) < 0.01
     assert np.abs(plain[0] - other).max() < 0.1
-    assert hidden_shares(Model(name="empty", parts=())) == ()
+    assert vertex_occlusion(Model(name="empty", parts=())) == ()
 
 
 def test_glass_hides_nothing() -> None:
     """What is seen through is neither dark itself nor darkens what it holds."""
     clear = model_of(bowl(), alpha="blend", base_colour=(1.0, 1.0, 1.0, 0.1)).parts[0]
     inner = replace(model_of(bowl()).parts[0], mesh=Primitives().load("cube").model.parts[0].mesh)
-    found = hidden_shares(Model(name="m", parts=(clear, inner)))
+    found = vertex_occlusion(Model(name="m", parts=(clear, inner)))
     assert all((part == 0.0).all() for part in found)
 
 
 def test_what_was_found_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """Another process, and a model in another paint, read what the first one found."""
-    (made,) = hidden_shares(model_of(bowl()))
-    monkeypatch.setattr(own_occlusion, "light_hits", None)
-    (kept,) = hidden_shares(model_of(bowl(), base_colour=(1.0, 0.0, 0.0, 1.0)))
+    (made,) = vertex_occlusion(model_of(bowl()))
+    monkeypatch.setattr(self_occlusion, "light_hits", None)
+    (kept,) = vertex_occlusion(model_of(bowl(), base_colour=(1.0, 0.0, 0.0, 1.0)))
     assert made.tobytes() == kept.tobytes()

@@ -1,4 +1,4 @@
-"""Light that a model hides from its own surface: from `Model` to a share of each vertex.
+"""Ambient occlusion of a model by itself: from `Model` to a share of each vertex.
 
 In the folds of a curtain, in a cup or between keys little of the light from around arrives. How
 much is the same wherever the model stands, so it is found once: rays from points of every triangle
@@ -14,16 +14,19 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.native.bake_types import LitPoints
+from sailenv_ros.native.gather_kernels import hemisphere_rays
 from sailenv_ros.native.library import native_library
 from sailenv_ros.native.ray_kernels import light_hits
 from sailenv_ros.rays.model_triangles import ModelTriangles, triangles_of
+from sailenv_ros.rays.ray_patterns import low_discrepancy_points
 from sailenv_ros.rays.triangle_tree import triangle_tree
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.digests import add_array, once
 from sailenv_ros.types.model import Model
 
-__all__ = ["arriving_share", "hidden_shares"]
+__all__ = ["LEAST_WEIGHT", "arriving_share", "vertex_occlusion"]
 
 Floats: TypeAlias = NDArray[np.float32]
 Doubles: TypeAlias = NDArray[np.float64]
@@ -40,20 +43,21 @@ ROUNDS = 8
 """Of the fit; its error is below the noise of the rays after these."""
 
 LEAST_WEIGHT = 0.02
-"""Of what is hidden altogether, in the fit."""
+"""Of what is hidden altogether, in means and fits: it is seldom seen."""
 
 STIFFNESS = 4.0
 """Vertices that fewer points than this tell of hardly follow the noise of their rays."""
 
-LIFT = 1e-3
-"""Of a point from its surface, as a share of the model's size; rays begin there."""
+PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])
+"""Steps of the R2 sequence of Roberts (2018), "The unreasonable effectiveness of quasirandom
+sequences"."""
 
-_RAYS_AT_ONCE = 1 << 20
+POINTS_AT_ONCE = 1 << 14
 
 
 @once
-def hidden_shares(model: Model) -> tuple[Floats, ...]:
-    """Return which share of the light from around a model takes from its own surface.
+def vertex_occlusion(model: Model) -> tuple[Floats, ...]:
+    """Return which share of the light from around a model hides from its own surface.
 
     Materials count by what is opaque alone, so painted models share what was found.
 
@@ -69,7 +73,7 @@ def hidden_shares(model: Model) -> tuple[Floats, ...]:
     for part in model.parts:
         add_array(digest, part.mesh.triangles)
     made = cached_arrays(
-        "hidden",
+        "occlusion",
         [digest.digest()],
         lambda: _arrays(model, triangles),
         code=code_digest("rays"),
@@ -114,8 +118,8 @@ def _points(areas: Doubles) -> tuple[NDArray[np.intp], Doubles]:
     each = np.clip(wanted, 1, MOST_OF_TRIANGLE).astype(np.intp)
     owners = np.repeat(np.arange(len(areas)), each)
     number = np.arange(len(owners)) - np.repeat(np.cumsum(each) - each, each)
-    # The plastic sequence of Roberts (2018), which is even however many points a triangle has.
-    u, v = np.modf((number[:, None] + 0.5) * [0.7548776662466927, 0.5698402909980532])[0].T
+    # Even however many points a triangle has.
+    u, v = np.modf((number[:, None] + 0.5) * PLASTIC)[0].T
     root = np.sqrt(u)
     alone = np.repeat(each == 1, each)[:, None]
     weights = np.stack([1.0 - root, root * (1.0 - v), root * v], axis=1)
@@ -127,58 +131,30 @@ def _hidden_at(
 ) -> Doubles:
     """Return (P,) the share of directions in which each point meets the model itself."""
     tree = triangle_tree(corners.astype(np.float32))
-    size = float(np.linalg.norm(tree.high - tree.low))
     middle = corners.mean(axis=1, keepdims=True)
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     flat *= np.where((flat * normals.mean(axis=1)).sum(axis=1) < 0.0, -1.0, 1.0)[:, None]
-    flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-30)
+    flat = _unit(flat)
     # A little inwards from the edges, where a neighbour may stand on end.
     inner = middle + 0.98 * (corners - middle)
-    points = np.einsum("pc,pcx->px", weights, inner[owners]) + LIFT * size * flat[owners]
-    turned = np.einsum("pc,pcx->px", weights, normals[owners])
-    turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-30)
+    points = np.einsum("pc,pcx->px", weights, inner[owners])
+    turned = _unit(np.einsum("pc,pcx->px", weights, normals[owners]))
+    # Each point moves the pattern by its own numbers: what remains is noise.
+    shifts = np.modf(np.arange(len(points))[:, None] * PLASTIC)[0]
+    pattern = low_discrepancy_points(RAYS)
     shares = np.empty(len(points))
-    step = max(1, _RAYS_AT_ONCE // RAYS)
-    for first in range(0, len(points), step):
-        chosen = slice(first, first + step)
-        directions = _around(turned[chosen], np.arange(first, first + len(points[chosen])))
-        origins = np.repeat(points[chosen], RAYS, axis=0)
-        found = light_hits(
-            tree.record,
-            np.ascontiguousarray(origins, np.float32),
-            np.ascontiguousarray(directions, np.float32),
-            threads=thread_count(),
-        )
-        # Where a normal leans, a ray may begin below its own triangle: it does not count.
-        own = (
-            np.einsum("rx,rx->r", directions, np.repeat(flat[owners[chosen]], RAYS, axis=0)) <= 0.0
-        )
-        met = ((found.triangle >= 0) & ~own).reshape(-1, RAYS).sum(axis=1)
-        shares[chosen] = met / np.maximum(RAYS - own.reshape(-1, RAYS).sum(axis=1), 1)
+    for first in range(0, len(points), POINTS_AT_ONCE):
+        some = slice(first, first + POINTS_AT_ONCE)
+        given = (points[some], turned[some], flat[owners[some]], shifts[some])
+        lit = LitPoints(*(np.ascontiguousarray(array, np.float32) for array in given))
+        rays = (array.reshape(-1, 3) for array in hemisphere_rays(lit, pattern))
+        found = light_hits(tree.record, *rays, threads=thread_count())
+        shares[some] = (found.triangle >= 0).reshape(-1, RAYS).mean(axis=1)
     return shares
 
 
-def _around(normals: Doubles, numbers: NDArray[np.intp]) -> Doubles:
-    """Return (P * RAYS, 3) directions about normals, with the density of the cosine."""
-    index = np.arange(RAYS)
-    # Each point turns the pattern about its normal by its own angle: what remains is noise.
-    turn = np.modf(numbers[:, None] * 0.6180339887498949)[0]
-    angle = 2.0 * np.pi * (np.modf(index * 0.7548776662466927)[0] + turn)
-    height = np.sqrt((index + 0.5) / RAYS)
-    beside = np.sqrt(1.0 - height * height)
-    sign = np.where(normals[:, 2] < 0.0, -1.0, 1.0)
-    x, y, z = normals.T
-    # Duff et al. 2017, "Building an orthonormal basis, revisited".
-    a = -1.0 / (sign + z)
-    b = x * y * a
-    across = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x], axis=1)
-    along = np.stack([b, sign + y * y * a, -y], axis=1)
-    directions = (
-        (beside * np.cos(angle))[..., None] * across[:, None]
-        + (beside * np.sin(angle))[..., None] * along[:, None]
-        + np.broadcast_to(height[:, None], (len(normals), RAYS, 1)) * normals[:, None]
-    )
-    return np.asarray(directions.reshape(-1, 3))
+def _unit(vectors: Doubles) -> Doubles:
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-30))
 
 
 def _fitted(shares: Doubles, vertices: NDArray[np.int64], weights: Doubles, count: int) -> Doubles:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.ray_patterns import low_discrepancy_points, sequence_points
+from sailenv_ros.rays.ray_patterns import low_discrepancy_points, sequence_points
 
 
 @pytest.mark.parametrize("count", [1, 16, 64, 256])
