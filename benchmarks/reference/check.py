@@ -149,7 +149,7 @@ def _sky_agrees(renderer: Renderer) -> bool:
         revision=1,
         instances=(),
         categories=CategoryTable([]),
-        environment=Environment(sky=sky),
+        environment=Environment(sky=sky, sky_blend=False),
     )
     snapshot = WorldSnapshot(
         sim_time_ns=0,
