@@ -114,7 +114,8 @@ LIGHT = structure(
     ("reflection_scale layers_per_roughness", "<f4"),
     ("reflection_points_at reflection_table_at", ADDRESS),
     ("room_low room_high", "<f4", 3),
-    ("traced_at", ADDRESS),
+    ("traced_at mirrored_lights_at", ADDRESS),
+    ("mirrored_light_count", "<i8"),
     ("outside_id", "<i4"),
     ("outside_radiance", "<f4"),
 )

@@ -16,13 +16,13 @@ import pytest
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake import direct
-from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.native.ray_types import RAY_SCENE
 from sailenv_ros.native.relight_kernels import direct_light_delta
 from sailenv_ros.native.render_types import address, record
 from sailenv_ros.render.picture.post_pass import Light as SensorLight
 from sailenv_ros.render.picture.post_pass import PostPass
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.lights import Environment, Light, LightType
 from tests.render.conftest import Render
 from tests.support.tiny_scenes import Thing, camera_at, model_of, snapshot_of, wall_mesh

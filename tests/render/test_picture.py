@@ -57,6 +57,42 @@ def test_white_furnace(render: Render, roughness: float, metallic: float) -> Non
     assert radiance.min() >= 0.5 * 0.97
 
 
+@pytest.mark.parametrize("roughness", [0.2, 0.4, 0.6, 0.9])
+@pytest.mark.parametrize("angle_deg", [5, 50, 75])
+def test_black_in_uniform_light_mirrors_what_its_lobe_does(
+    render: Render, roughness: float, angle_deg: float
+) -> None:
+    """Against 200,000 rays of GGX's lobe, and what comes back of further bounces."""
+    black = model_of(WALL, base_colour=(0, 0, 0, 1), roughness=roughness)
+    turned = Pose.from_rpy_deg((3.0, 0, 0), (0, 0, angle_deg))
+    bright = replace(UNIFORM, exposure=2.0)
+    scene = snapshot_of([Thing(black, turned)], lights=(), environment=bright)
+    rgb = render(scene, camera_at(width=97, height=73), "rgb")["rgb"]
+    scale, bias = _lobe_shares(roughness, np.cos(np.radians(angle_deg)))
+    once, lost, mean = 0.04 * scale + bias, 1.0 - scale - bias, 0.04 + 0.96 / 21.0
+    expected = 2.0 * once * (1.0 + lost * mean / (1.0 - mean * lost))
+    assert linear(rgb[36, 48]).mean() == pytest.approx(expected, rel=0.08)
+
+
+def _lobe_shares(roughness: float, cosine: float) -> tuple[float, float]:
+    """Shares of even light that are mirrored: times the reflectance head-on, and besides.
+
+    Heitz 2014, "Understanding the masking-shadowing function": height-correlated Smith.
+    """
+    random = np.random.default_rng(5)
+    a2 = roughness**4
+    u, turn = random.random(200_000), 2.0 * np.pi * random.random(200_000)
+    up = np.sqrt((1.0 - u) / (1.0 + (a2 - 1.0) * u))
+    along = np.sqrt(1.0 - up**2) * np.cos(turn) * np.sqrt(1.0 - cosine**2) + up * cosine
+    sent = 2.0 * along * up - cosine
+    lit = (sent > 0.0) & (along > 0.0)
+    out = np.where(lit, sent, 1.0)
+    smith = out * np.sqrt(cosine**2 * (1.0 - a2) + a2) + cosine * np.sqrt(out**2 * (1.0 - a2) + a2)
+    share = np.where(lit, 2.0 * out * along / (smith * up), 0.0)
+    grazing = (1.0 - np.clip(along, 0.0, 1.0)) ** 5
+    return float((share * (1.0 - grazing)).mean()), float((share * grazing).mean())
+
+
 def test_a_lambertian_wall_under_a_lamp(render: Render) -> None:
     """Head-on at 2 m from a lamp of 8 W/sr: radiance albedo/pi · 8/4, less what is reflected."""
     lamp = Light(name="lamp", type="point", intensity=8.0, position_m=(1.0, 0, 0), range_m=1000.0)

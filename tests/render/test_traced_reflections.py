@@ -14,7 +14,7 @@ from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.picture_settings import PictureSettings
 from tests.support.baked import baked, chart, layer
 from tests.support.picture import linear
@@ -51,10 +51,13 @@ def camera(width: int = 160) -> Camera:
     return replace(camera_at(width=width, height=width * 3 // 4), picture=PLAIN)
 
 
-def picture(native: NativeRenderer, *things: Thing, width: int = 160) -> NDArray[np.uint8]:
+def picture(
+    native: NativeRenderer, *things: Thing, width: int = 160, lights: tuple[Light, ...] = ()
+) -> NDArray[np.uint8]:
     """In a dark baked room whose far wall alone has a chart."""
-    light = baked({1: chart(BACK_WALL.model, BACK_WALL.pose)}, [], layer(None))
-    scene = snapshot_of([BACK_WALL, *things], lights=(), environment=BLACK, baked=light)
+    layers = [layer(light) for light in lights]
+    light = baked({1: chart(BACK_WALL.model, BACK_WALL.pose)}, layers, layer(None))
+    scene = snapshot_of([BACK_WALL, *things], lights=lights, environment=BLACK, baked=light)
     request = RenderRequest(scene, camera(width), ("rgb",))
     rgb: NDArray[np.uint8] = native.render(request).views["rgb"]
     return rgb
@@ -123,40 +126,74 @@ def test_a_pane_mirrors_with_both_of_its_faces(native: NativeRenderer) -> None:
     np.testing.assert_allclose(around(with_lamp, seen), expected, rtol=0.1)
 
 
-def test_rough_metal_mirrors_what_stands_near_as_its_lobe_does(native: NativeRenderer) -> None:
-    """A lamp a hand away, against 200,000 rays of GGX's lobe. What stands far off is left out."""
-    rough = Thing(
-        model_of(box_mesh((1.0, 2.0, 2.0)), base_colour=(*TINT, 1.0), metallic=1.0, roughness=0.4),
-        Pose((3.5, 0.0, 0.0)),
-    )
-    size, centre = np.array((0.25, 0.5, 0.5)), np.array((2.8, 0.5, 0.0))
+ROUGH = 0.4
+ROUGH_METAL = Thing(
+    model_of(box_mesh((1.0, 2.0, 2.0)), base_colour=(*TINT, 1.0), metallic=1.0, roughness=ROUGH),
+    Pose((3.5, 0.0, 0.0)),
+)
+
+
+@pytest.mark.parametrize("distance_m", [0.2, 0.5])
+def test_rough_metal_mirrors_what_its_lobe_meets(native: NativeRenderer, distance_m: float) -> None:
+    """A lamp before it, against 200,000 rays of GGX's lobe."""
+    size, centre = np.array((0.25, 0.5, 0.5)), np.array((3.0 - distance_m, 0.5, 0.0))
     lamp = model_of(box_mesh(tuple(size)), base_colour=(0.0, 0.0, 0.0, 1.0), emission=GLOW)
-    rgb = picture(native, rough, Thing(lamp, Pose(tuple(centre))), width=960)
-    lens = camera(960).intrinsics
+    rgb = picture(native, ROUGH_METAL, Thing(lamp, Pose(tuple(centre))), width=960)
     for y in (0.16, 0.2, 0.24):
-        column, row = round(lens.cx - lens.fx * y / 3.0), lens.height // 2
-        point = np.array((3.0, y, 0.0))
-        expected = lobe_share(point, 0.4, centre - size / 2, centre + size / 2) * GLOW[0] * TINT[0]
-        seen = linear(rgb)[row - 16 : row + 16, column - 2 : column + 3, 0]
-        # Pixels share what they meet with those beside them, and no ray is of the steepest part of
-        # the lobe.
-        assert 0.5 * expected < seen.mean() < 1.05 * expected
-    far = picture(native, rough, Thing(LAMP, Pose((-1.0, 0.8, 0.3))))
-    assert around(far, place_of((-0.6, 0.8, 0.3))).max() < 0.005
+        expected = lobe_share(centre - size / 2, centre + size / 2, y) * GLOW[0] * TINT[0]
+        # Pixels share what they meet with those around them.
+        assert 0.85 * expected < mean_at(rgb, y) < 1.2 * expected
 
 
-def lobe_share(
-    point: NDArray[np.float64],
-    roughness: float,
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-) -> float:
-    """Share of what a rough mirror that faces -x sends to the origin that comes from a box.
+def test_rough_metal_mirrors_the_face_of_an_area_light(native: NativeRenderer) -> None:
+    """It has no body; what stands before it hides it."""
+    light = Light(
+        name="panel",
+        type="area",
+        position_m=(2.4, 0.5, 0.0),
+        direction=(1.0, 0.0, 0.0),
+        width_m=0.5,
+        height_m=0.5,
+        intensity=0.3,
+    )
+    seen = mean_at(picture(native, ROUGH_METAL, width=960, lights=(light,)), 0.2)
+    low, high = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
+    assert seen == pytest.approx(lobe_share(low, high, 0.2) * 0.3 * TINT[0], rel=0.2)
+    card = Thing(CARD, Pose((2.45, 0.7, 0.0)))
+    assert mean_at(picture(native, ROUGH_METAL, card, width=960, lights=(light,)), 0.2) < 0.01
+
+
+def test_a_lamp_has_a_highlight_on_rough_metal(native: NativeRenderer) -> None:
+    """Of a point light: distribution, masking and tint at a point that sees it, and shadow."""
+    lamp = Light(name="bulb", type="point", position_m=(2.0, 0.6, 0.0), intensity=0.1)
+    seen = mean_at(picture(native, ROUGH_METAL, width=960, lights=(lamp,)), 0.3)
+    point = np.array((3.0, 0.3, 0.0))
+    offset = np.array(lamp.position_m) - point
+    towards, view = offset / np.linalg.norm(offset), -point / np.linalg.norm(point)
+    halfway = (towards + view) / np.linalg.norm(towards + view)
+    a2, nl, nv, nh = ROUGH**4, -towards[0], -view[0], -halfway[0]
+    smith = nl * np.sqrt(nv**2 * (1 - a2) + a2) + nv * np.sqrt(nl**2 * (1 - a2) + a2)
+    lobe = 0.5 * a2 / (np.pi * (1.0 - nh**2 * (1.0 - a2)) ** 2 * smith)
+    expected = TINT[0] * lobe * nl * 0.1 / (offset @ offset)
+    assert seen == pytest.approx(expected, rel=0.15)
+    card = Thing(CARD, Pose((2.3, 0.9, 0.0)))
+    assert mean_at(picture(native, ROUGH_METAL, card, width=960, lights=(lamp,)), 0.3) < 0.01
+
+
+def mean_at(rgb: NDArray[np.uint8], y: float) -> float:
+    """Mean red radiance of a picture 960 wide around a point of the metal's front [m]."""
+    lens = camera(960).intrinsics
+    column, row = round(lens.cx - lens.fx * y / 3.0), round(lens.cy)
+    return float(linear(rgb)[row - 16 : row + 16, column - 2 : column + 3, 0].mean())
+
+
+def lobe_share(low: NDArray[np.float64], high: NDArray[np.float64], y: float) -> float:
+    """Share of what a point of the rough metal sends to the origin that comes from a box.
 
     Walter et al. 2007, "Microfacet models for refraction through rough surfaces": D, G and (41).
     """
     random = np.random.default_rng(3)
-    a2 = roughness**4
+    point, a2 = np.array((3.0, y, 0.0)), ROUGH**4
     u, turn = random.random(200_000), 2.0 * np.pi * random.random(200_000)
     cosine = np.sqrt((1.0 - u) / (1.0 + (a2 - 1.0) * u))
     sine = np.sqrt(1.0 - cosine**2)
@@ -179,7 +216,7 @@ def lobe_share(
 
 
 def test_frames_do_not_depend_on_threads_or_the_instruction_set() -> None:
-    """Rays are shared within bands, which are the same for any number of threads."""
+    """Rays are shared within rows and squares, which are the same for any number of threads."""
     things = METAL, Thing(LAMP, Pose((-1.0, 0.8, 0.3)))
     made = set()
     for name, threads in itertools.product(load_library().instruction_sets, (1, 3)):

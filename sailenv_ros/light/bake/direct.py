@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.native.bake_types import LitPoints
 from sailenv_ros.native.light_kernels import direct_light, light_rays
 from sailenv_ros.rays.light_rays import RayScene
+from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.lights import Light
 
 __all__ = ["Points", "arriving", "free_shares", "visible_range"]

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from sailenv_ros.light.bake.area_light import solid_angles
 from sailenv_ros.light.bake.direct import Points
 from sailenv_ros.light.bake.gather import Surroundings
-from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.light.bake.settings import BakeSettings
 from sailenv_ros.native.bake_types import SkyWindows
 from sailenv_ros.native.light_kernels import light_samples
@@ -19,6 +18,7 @@ from sailenv_ros.native.surface_light import probe_radiance
 from sailenv_ros.rays.light_rays import RayScene
 from sailenv_ros.rays.ray_patterns import fibonacci_sphere
 from sailenv_ros.types.baked_light import ProbeGrid
+from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.lights import Light
 
 __all__ = [

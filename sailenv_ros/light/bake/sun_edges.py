@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.crossed_layers import above_crossed_layers
 from sailenv_ros.light.bake.direct import Points, free_shares
-from sailenv_ros.light.bake.light_shapes import SUN_DISC_RADIUS, light_record
 from sailenv_ros.light.bake.texels import Texels, off_the_edges
 from sailenv_ros.native.bake_types import TexelMap
 from sailenv_ros.native.texel_kernels import bordered_blocks, nearest_triangles
@@ -21,6 +20,7 @@ from sailenv_ros.rays.light_rays import RayScene
 from sailenv_ros.rays.ray_patterns import low_discrepancy_points
 from sailenv_ros.rays.static_geometry import StaticGeometry
 from sailenv_ros.types.baked_light import EDGE_POINTS, SunEdges
+from sailenv_ros.types.light_shapes import SUN_DISC_RADIUS, light_record
 from sailenv_ros.types.lights import Light
 
 __all__ = ["sun_edges"]

@@ -16,7 +16,6 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import QUICK, Quality
@@ -36,6 +35,7 @@ from sailenv_ros.rays.self_occlusion import LEAST_WEIGHT
 from sailenv_ros.rays.static_geometry import PlacedModel
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
 from sailenv_ros.types.geometry import invert
+from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.model import Model
 
 __all__ = ["ObjectLighting", "Place", "PlacedObject", "SurfacePoints", "near_changes"]

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.moved_surfaces import MovedSurfaces
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject
@@ -27,6 +26,7 @@ from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import direct_light_delta, gather_change, reached_points
 from sailenv_ros.rays.ray_patterns import low_discrepancy_points, sequence_points
 from sailenv_ros.types.baked_light import BakedLight
+from sailenv_ros.types.light_shapes import light_record
 
 __all__ = ["ObjectShadows"]
 

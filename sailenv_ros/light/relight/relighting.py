@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.light_probes import probe_positions
-from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.layer_updates import DirectDelta, LayerUpdates
@@ -37,6 +36,7 @@ from sailenv_ros.rays.ray_patterns import (
 )
 from sailenv_ros.types.baked_light import BakedLight, LightChart
 from sailenv_ros.types.geometry import invert
+from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.model import Model
 
 __all__ = ["relit"]

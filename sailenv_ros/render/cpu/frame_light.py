@@ -20,6 +20,7 @@ from sailenv_ros.native.drawing import ROW_PADDING, Drawing
 from sailenv_ros.native.lamp import LAMP
 from sailenv_ros.native.library import native_library
 from sailenv_ros.native.light_maps import LayeredMap, blur_directions, sum_texels
+from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.render_types import LIGHT, REFLECTION_POINT, address, record
 from sailenv_ros.render.cpu.part_table import PartTable
 from sailenv_ros.render.cpu.traced_scene import TracedScene
@@ -32,7 +33,7 @@ from sailenv_ros.render.scene.lightmap_compositing import (
     light_alone,
     main_light,
 )
-from sailenv_ros.render.scene.mirrored_lamps import Seen
+from sailenv_ros.render.scene.mirrored_lamps import Seen, mirrored_lights
 from sailenv_ros.render.scene.outside_light import shown_outside
 from sailenv_ros.render.scene.reflection_store import ReflectionStore
 from sailenv_ros.render.scene.room_reflections import RoomReflections, Share
@@ -146,6 +147,7 @@ class FrameLight:
         self._reflection_points = np.zeros(1, REFLECTION_POINT)
         self._sky: tuple[tuple[SkyMap, float | None], NDArray[np.float16]] | None = None
         self._lamps = np.zeros(0, LAMP)
+        self._mirrored_lights = np.zeros(0, RAY_LIGHT)
         self._warned_of: Sequence[Light] | None = None
         self._light = np.zeros(1, LIGHT)
         self._light_map: LayeredMap | None = None
@@ -197,6 +199,9 @@ class FrameLight:
             look = partial(self._look, light, snapshot, main, radiance, still)
             self._reflections.update(snapshot, still, main, look, composited.live)
             self._reflected = composited
+        self._mirrored_lights = mirrored_lights(contents.lights, main, composited.live)
+        light["mirrored_lights_at"] = address(self._mirrored_lights)
+        light["mirrored_light_count"] = len(self._mirrored_lights)
         self._set_reflections(light)
         self._set_reflection_table(light, snapshot)
         self._of = contents, composited

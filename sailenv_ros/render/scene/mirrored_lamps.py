@@ -6,6 +6,7 @@ its one direction, goes out. What lies between hides it. Knows no graphics libra
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -18,9 +19,10 @@ from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.render_types import record
 from sailenv_ros.render.scene.reflection_map import EDGE, Glint, octahedral_directions
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.lights import Light, area_sides, lamp_rows
 
-__all__ = ["Seen", "Surroundings", "glint_of", "radiance_of"]
+__all__ = ["Seen", "Surroundings", "glint_of", "mirrored_lights", "radiance_of"]
 
 SUBDIVISIONS = 4
 """Directions along a texel's edge that are looked in for an area light."""
@@ -71,6 +73,26 @@ class Surroundings:
             row = np.clip(np.rint(v), 0, height - 1).astype(np.intp)
             free[mine] = seen.depth_m[row, column] > z[mine] - NEAR_M
         return free
+
+
+def mirrored_lights(
+    lights: Iterable[Light], main: Light | None, live: Collection[Light]
+) -> NDArray[np.void]:
+    """Return (N,) RAY_LIGHT: all lights that shine, but those whose highlights are drawn live.
+
+    Parameters
+    ----------
+    main : Light or None
+        The light that casts the shadow map; drawn live.
+    live : collection of Light
+        Others that are.
+    """
+    rows = [
+        light_record(light)
+        for light in lights
+        if light is not main and light not in live and any(light.power)
+    ]
+    return np.concatenate(rows) if rows else np.zeros(0, RAY_LIGHT)
 
 
 def radiance_of(light: Light, around: Surroundings) -> NDArray[np.float32]:

@@ -328,8 +328,11 @@ bool sees_one_part(const Shading& s, const uint32_t* fine, int64_t stride) {
     return true;
 }
 
-void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratch& scratch) {
-    scratch.fragments.clear();
+}  // namespace
+
+void list_edges(const Shading& s, int32_t first_row, int32_t last_row, const EdgeScratch& scratch,
+                BandEdges& edges) {
+    edges.fragments.clear();
     const int64_t stride = scratch.stride;
     for (int32_t y = first_row; y < last_row; y++) {
         const uint32_t* top = scratch.visible.data() + 2 * (y - first_row) * stride;
@@ -357,18 +360,20 @@ void list_band(const Shading& s, int32_t first_row, int32_t last_row, EdgeScratc
                 if (bends[k] == 0 && sees_one_part(s, fine, stride)) continue;
                 if (more[k] == 0 &&
                     list_pair(s, static_cast<uint32_t>(seen[0][k]), static_cast<uint32_t>(other[k]),
-                              static_cast<uint32_t>(second[k]), x + k, y, scratch.fragments)) {
+                              static_cast<uint32_t>(second[k]), x + k, y, edges.fragments)) {
                     continue;
                 }
-                list_fragments(s, scratch, fine, x + k, y, scratch.fragments);
+                list_fragments(s, scratch, fine, x + k, y, edges.fragments);
             }
         }
     }
 }
 
-// Mixes fragments, which are listed pixel by pixel, into the light of their pixels.
-void mix_in(const Shading& s, const EdgeScratch& scratch) {
-    const std::vector<Fragment>& fragments = scratch.fragments;
+void smooth_edges(const Shading& s, BandEdges& edges) {
+    const std::vector<Fragment>& fragments = edges.fragments;
+    edges.light.resize(4 * fragments.size());
+    shade_fragments(s, fragments.data(), static_cast<int64_t>(fragments.size()),
+                    edges.light.data());
     for (size_t k = 0; k < fragments.size();) {
         const int32_t x = fragments[k].pixel_x, y = fragments[k].pixel_y;
         uint16_t* pixel = s.outputs->radiance + 4 * (y * s.width + x);
@@ -377,7 +382,7 @@ void mix_in(const Shading& s, const EdgeScratch& scratch) {
              k++) {
             rest -= fragments[k].weight;
             for (size_t c = 0; c < 4; c++) {
-                sum[c] += fragments[k].weight * small_number(scratch.light[4 * k + c]);
+                sum[c] += fragments[k].weight * small_number(edges.light[4 * k + c]);
             }
         }
         for (int c = 0; c < 4; c++) {
@@ -388,8 +393,6 @@ void mix_in(const Shading& s, const EdgeScratch& scratch) {
         }
     }
 }
-
-}  // namespace
 
 int64_t fine_stride(int64_t width) {
     return (2 * width + 1 + ROW_PADDING + 16 + 15) & ~int64_t{15};
@@ -403,16 +406,6 @@ void take_centres(const uint32_t* fine, int64_t width, uint32_t* pixels) {
 
 void take_centres(const float* fine, int64_t width, float* pixels) {
     for (int64_t x = 0; x < width; x += 8) store(pixels + x, every_second(fine + 2 * x + 1));
-}
-
-void smooth_edges_of_band(const Shading& shading, int32_t first_row, int32_t last_row,
-                          EdgeScratch& scratch) {
-    list_band(shading, first_row, last_row, scratch);
-    scratch.light.resize(4 * scratch.fragments.size());
-    shade_fragments(shading, scratch.fragments.data(),
-                    static_cast<int64_t>(scratch.fragments.size()), scratch.rough,
-                    scratch.light.data());
-    mix_in(shading, scratch);
 }
 
 }  // namespace sailenv

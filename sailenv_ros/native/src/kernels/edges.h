@@ -14,9 +14,12 @@ struct EdgeScratch {
     std::vector<uint32_t> visible;  // as in `Scratch`, of fine samples
     std::vector<float> inverse_depth;
     int64_t stride = 0;
-    std::vector<Fragment> fragments;
-    std::vector<uint16_t> light;  // four halves of each
-    RoughBand rough;
+};
+
+// What the fine samples of a band's pixels see besides what their centres see.
+struct BandEdges {
+    std::vector<Fragment> fragments;  // pixel by pixel
+    std::vector<uint16_t> light;      // four halves of each
 };
 
 // Numbers from row to row of fine samples. Behind the last one is room for eight, and as many
@@ -27,9 +30,11 @@ int64_t fine_stride(int64_t width);
 void take_centres(const uint32_t* fine, int64_t width, uint32_t* pixels);
 void take_centres(const float* fine, int64_t width, float* pixels);
 
-// Mixes into the radiance of a band what its pixels' fine samples see besides what their centres
-// see.
-void smooth_edges_of_band(const Shading& shading, int32_t first_row, int32_t last_row,
-                          EdgeScratch& scratch);
+// Lists what the fine samples of a band see.
+void list_edges(const Shading& shading, int32_t first_row, int32_t last_row,
+                const EdgeScratch& scratch, BandEdges& edges);
+
+// Mixes their light into the radiance of the pixels.
+void smooth_edges(const Shading& shading, BandEdges& edges);
 
 }  // namespace sailenv

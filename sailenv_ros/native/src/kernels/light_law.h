@@ -114,6 +114,31 @@ LIGHT_LAW Real schlick_share(Real cosine) {
     return square * square * grazing;
 }
 
+// Shares of even light around that a GGX surface with height-correlated Smith shadowing mirrors at
+// a cosine (split-sum environment term, Karis 2013): `mirrored_scale` times its reflectance
+// head-on, plus `mirrored_bias`. Polynomials fitted to the integrals, their sum for a reflectance
+// of 0.04 within 2 % (RMS), 8 % at grazing angles.
+LIGHT_LAW Real mirrored_scale(Real roughness, Real cosine) {
+    Real r = roughness, grazing = (1.0f - cosine) * (1.0f - cosine), g = grazing * grazing;
+    Real q = cosine / (cosine + r * r), q2 = q * q;
+    Real smooth_part = 2.2023f * q - 6.2876f * q2 + q2 * q * (8.0846f - 3.5346f * q) + 0.5407f;
+    Real grazing_part = -0.1003f - 0.4303f * q2 + g * (-0.8263f * q + 0.3586f * g * q2);
+    Real rough_part = 2.9637f - 3.0018f * q2;
+    Real rougher_part = -2.8354f + q2 * (6.2797f * q - 3.1873f) + 0.4043f * g * g + 0.5116f * r * r;
+    return q * smooth_part + g * grazing_part + r * (rough_part + r * rougher_part);
+}
+LIGHT_LAW Real mirrored_bias(Real roughness, Real cosine) {
+    Real r = roughness, grazing = (1.0f - cosine) * (1.0f - cosine), g = grazing * grazing;
+    Real q = cosine / (cosine + r * r), q2 = q * q;
+    Real smooth_part = q2 * q2 * (4.1647f - 3.8393f * q) + 2.5199f * g * q;
+    Real grazing_part = g * g *
+                        (q2 * (0.5807f * q - 3.8004f) +
+                         g * (q * (2.9223f * q - 1.4347f) + g * (1.0985f - 1.415f * q)));
+    Real rough_part = r * g * (-2.2248f - 3.8377f * q2 * q + g * g * (5.0231f * q - 0.918f * g));
+    Real rougher_part = r * r * g * (2.9558f + 0.3202f * g * g - 1.186f * r);
+    return g * (smooth_part + grazing_part + rough_part + rougher_part);
+}
+
 // See-through things as rough as this are cloth, and mirror nothing.
 const float LEAST_CLOTH = 0.5f;
 

@@ -165,23 +165,37 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
         vec3(static_cast<float>(m[3]), static_cast<float>(m[7]), static_cast<float>(m[11]));
     const int32_t band_rows = scratch.band_rows;
     const int64_t count = rows.end - rows.first;
+    const int32_t first_band = rows.first / band_rows;
+    if (smoothed) {
+        const size_t bands = static_cast<size_t>((rows.end - 1) / band_rows + 1 - first_band);
+        scratch.of_bands.resize(std::max(scratch.of_bands.size(), bands));
+    }
+    const auto edges_of = [&](int32_t band) -> BandEdges& {
+        return scratch.of_bands[static_cast<size_t>(band - first_band)];
+    };
     parallel_for(threads, count, band_rows, [&](int64_t begin, int64_t end, int64_t slot) {
-        const int64_t first = rows.first + begin, last = rows.first + end;
-        const int32_t band = static_cast<int32_t>(first / band_rows);
-        const int32_t first_row = static_cast<int32_t>(first);
-        const int32_t end_row = static_cast<int32_t>(last);
-        uint32_t* visible = scratch.visible.data() + first * scratch.stride;
-        float* inverse_depth = scratch.inverse_depth.data() + first * scratch.stride;
+        const int32_t first = rows.first + static_cast<int32_t>(begin), band = first / band_rows;
         if (smoothed) {
-            draw_fine_band(sampled, parts, band, scratch, scratch.edges[static_cast<size_t>(slot)]);
+            EdgeScratch& edges = scratch.edges[static_cast<size_t>(slot)];
+            draw_fine_band(sampled, parts, band, scratch, edges);
+            list_edges(shading, first, rows.first + static_cast<int32_t>(end), edges,
+                       edges_of(band));
         } else {
+            uint32_t* visible = scratch.visible.data() + first * scratch.stride;
+            float* inverse_depth = scratch.inverse_depth.data() + first * scratch.stride;
             clear_band(projection, band, band_rows, scratch.stride, visible, inverse_depth);
             draw_band(scratch.opaque, parts, projection, band, band_rows, scratch.stride, visible,
                       inverse_depth);
         }
-        EdgeScratch* edges = smoothed ? &scratch.edges[static_cast<size_t>(slot)] : nullptr;
-        shade_band(shading, first_row, end_row, smoothed ? &edges->rough : nullptr);
-        if (smoothed) smooth_edges_of_band(shading, first_row, end_row, *edges);
+    });
+    if (shaded && traces_reflections(shading)) {
+        sample_rough(threads, shading, rows.first, rows.end, scratch.rough);
+        shading.rough = &scratch.rough;
+    }
+    parallel_for(threads, count, band_rows, [&](int64_t begin, int64_t end, int64_t) {
+        const int32_t first = rows.first + static_cast<int32_t>(begin), band = first / band_rows;
+        shade_band(shading, first, rows.first + static_cast<int32_t>(end));
+        if (smoothed) smooth_edges(shading, edges_of(band));
         if (glazed) {
             draw_glass_band(shading, scratch.glass, glass, projection, band, band_rows,
                             scratch.inverse_depth.data());

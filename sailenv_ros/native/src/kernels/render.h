@@ -7,12 +7,15 @@
 
 #include "edges.h"
 #include "shade.h"
+#include "shade_rough.h"
 
 namespace sailenv {
 
 // What a drawing keeps from picture to picture.
 struct DrawingScratch : Scratch {
-    std::vector<EdgeScratch> edges;                         // of each thread
+    std::vector<EdgeScratch> edges;  // of each thread
+    std::vector<BandEdges> of_bands;
+    RoughSamples rough;
     std::vector<std::unique_ptr<DrawingScratch>> of_slots;  // of threads that draw rows apart
 };
 

@@ -107,6 +107,7 @@ struct ReflectionPoint {
 constexpr int32_t LIGHT_TERMS = 28, INSTANCE_ROW = 3 * LIGHT_TERMS + 12;
 
 struct TracedScene;  // see traced_types.h
+struct RayLight;     // see ray_types.h
 
 // Everything that lights a picture; all vectors in the world frame.
 struct Light {
@@ -141,9 +142,11 @@ struct Light {
     const ReflectionPoint* reflection_points;
     const int32_t* reflection_table;  // (ids,): the point that an instance uses
     vec3 room_low, room_high;
-    const TracedScene* traced;  // or null
-    int32_t outside_id;         // of what lies outside the room, which shines as the sky does; 0
-    float outside_radiance;     // of its white
+    const TracedScene* traced;        // or null
+    const RayLight* mirrored_lights;  // whose highlights what rays meet lacks
+    int64_t mirrored_light_count;
+    int32_t outside_id;      // of what lies outside the room, which shines as the sky does; 0
+    float outside_radiance;  // of its white
 };
 
 struct View {

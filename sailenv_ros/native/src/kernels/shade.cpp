@@ -98,13 +98,9 @@ void shine_as_outside(const Shading& s, Chunk& c) {
     }
 }
 
-// Whether rays tell what surfaces mirror.
-bool traces_reflections(const Shading& s) {
-    return s.outputs->radiance != nullptr && s.light->reflecting && s.light->traced != nullptr;
-}
-
-// The light of what was gathered.
-void light_chunk(const Shading& s, Chunk& c, const TracedPlaces& places) {
+// The light of what was gathered in pixels; `before` as in `trace_reflections`.
+void light_chunk(const Shading& s, Chunk& c, const int32_t* x, const int32_t* y,
+                 TracedRow* before) {
     if (!c.hit) {
         for (int32_t i = 0; i < c.padded; i += 8) {
             c.light.set(i, splat(vec3(0.0f, 0.0f, 0.0f)));
@@ -129,7 +125,10 @@ void light_chunk(const Shading& s, Chunk& c, const TracedPlaces& places) {
         light_from_sky(s, c);
     }
     mirror_surroundings(s, c);
-    if (traces_reflections(s)) trace_reflections(s, c, places);
+    if (traces_reflections(s)) {
+        trace_reflections(s, c, before);
+        if (s.rough != nullptr) mirror_rough(s, x, y, c);
+    }
     reflect_to_eye(s, c);
 }
 
@@ -161,7 +160,7 @@ void write_radiance(const Shading& s, const Chunk& c, uint16_t* radiance) {
     memcpy(radiance, out, static_cast<size_t>(c.count) * 8);
 }
 
-void shade_chunk(const Shading& s, Chunk& c, const TracedPlaces& places) {
+void shade_chunk(const Shading& s, Chunk& c, TracedRow* before) {
     const Outputs& wanted = *s.outputs;
     if (!wanted.radiance && !wants_attributes(wanted)) {
         if (wanted.surface != nullptr) write_surface(s, c.x, c.y, c.count);
@@ -178,7 +177,12 @@ void shade_chunk(const Shading& s, Chunk& c, const TracedPlaces& places) {
     set_rays(s, c);
     write_attributes(s, c);
     if (s.outputs->radiance == nullptr) return;
-    light_chunk(s, c, places);
+    alignas(32) int32_t x[CHUNK], y[CHUNK];
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        store(x + i, truncated(counting()) + (c.x + i));
+        store(y + i, splat(c.y));
+    }
+    light_chunk(s, c, x, y, before);
     write_radiance(s, c, s.outputs->radiance + 4 * (c.y * s.width + c.x));
 }
 
@@ -195,18 +199,16 @@ Vec3x8 rays_of_faces(const Shading& s, f8 x, f8 y, i8 faces) {
     return rays;
 }
 
-void shade_band(const Shading& s, int32_t first_row, int32_t last_row, RoughBand* rough) {
+bool traces_reflections(const Shading& s) {
+    return s.outputs->radiance != nullptr && s.light->reflecting && s.light->traced != nullptr;
+}
+
+void shade_band(const Shading& s, int32_t first_row, int32_t last_row) {
     Chunk chunk;
     const int32_t columns = static_cast<int32_t>((s.width + CHUNK - 1) / CHUNK);
     // One more on either side, of which nothing is known.
     std::vector<TracedRow> before;
-    TracedPlaces places{};
-    const bool traced = traces_reflections(s);
-    if (traced) {
-        before.resize(static_cast<size_t>(columns) + 2);
-        places.rough = rough;
-        if (rough != nullptr) rough->begin(first_row, last_row, s.width);
-    }
+    if (traces_reflections(s)) before.resize(static_cast<size_t>(columns) + 2);
     for (int32_t y = first_row; y < last_row; y++) {
         for (int32_t column = 0; column < columns; column++) {
             chunk.x = column * CHUNK;
@@ -214,22 +216,35 @@ void shade_band(const Shading& s, int32_t first_row, int32_t last_row, RoughBand
             chunk.count = static_cast<int32_t>(rest < CHUNK ? rest : CHUNK);
             chunk.padded = (chunk.count + 7) & ~7;
             chunk.y = y;
-            if (traced) places.before = &before[static_cast<size_t>(column) + 1];
-            shade_chunk(s, chunk, places);
+            shade_chunk(s, chunk,
+                        before.empty() ? nullptr : &before[static_cast<size_t>(column) + 1]);
         }
     }
 }
 
-void shade_fragments(const Shading& s, const Fragment* fragments, int64_t count, RoughBand& rough,
-                     uint16_t* out) {
+void gather_points(const Shading& s, const Fragment* fragments, Chunk& c) {
+    gather_fragments(s, fragments, c);
+    set_rays(s, c);
+    if (c.coloured) colour_for_picture(c);
+    if (c.detailed) apply_detail_maps(s, c);
+    place_points(s, c);
+}
+
+void shade_fragments(const Shading& s, const Fragment* fragments, int64_t count, uint16_t* out) {
     Chunk chunk;
+    alignas(32) int32_t x[CHUNK], y[CHUNK];
     for (int64_t first = 0; first < count; first += CHUNK) {
         const int64_t rest = count - first;
         chunk.count = static_cast<int32_t>(rest < CHUNK ? rest : CHUNK);
         chunk.padded = (chunk.count + 7) & ~7;
+        for (int32_t i = 0; i < chunk.padded; i++) {
+            const Fragment& own = fragments[first + (i < chunk.count ? i : 0)];
+            x[i] = own.pixel_x;
+            y[i] = own.pixel_y;
+        }
         gather_fragments(s, fragments + first, chunk);
         set_rays(s, chunk);
-        light_chunk(s, chunk, {nullptr, &rough, fragments + first});
+        light_chunk(s, chunk, x, y, nullptr);
         write_radiance(s, chunk, out + 4 * first);
     }
 }

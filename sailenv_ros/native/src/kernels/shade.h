@@ -8,6 +8,9 @@
 
 namespace sailenv {
 
+struct Chunk;
+struct RoughSamples;
+
 // What shading needs besides the scene; all in single precision.
 struct Shading {
     const TriangleSet* set;
@@ -16,6 +19,7 @@ struct Shading {
     const uint8_t* at_baked_pose;
     const Light* light;
     const Outputs* outputs;
+    const RoughSamples* rough;  // what rough surfaces mirror; null where no rays tell
     int64_t width, stride;
     const uint32_t* visible;
     FastLens lens;  // 1, 1, 0, 0 where there is a table
@@ -63,31 +67,8 @@ Vec3x8 mirrored_room(const Light& light, i8 point, Vec3x8 at, Vec3x8 direction, 
 Vec3x8 trace_glass(const Shading& shading, Vec3x8 point, Vec3x8 direction, f8 distance, i8 wanted,
                    Vec3x8 mirrored);
 
-// What rough surfaces of a band mirror by rays, for the samples at their edges.
-struct RoughBand {
-    int32_t first_row, rows, width;
-    std::vector<int32_t> ids;  // of each pixel the instance, or 0 where no rays tell
-    std::vector<vec3> normals, mirrored;
-
-    void begin(int32_t first, int32_t last, int64_t across) {
-        first_row = first;
-        rows = last - first;
-        width = static_cast<int32_t>(across);
-        const size_t size = static_cast<size_t>(rows) * static_cast<size_t>(width);
-        ids.assign(size, 0);
-        normals.resize(size);
-        mirrored.resize(size);
-    }
-    bool has_row(int32_t y) const { return y >= first_row && y < first_row + rows; }
-    size_t place(int32_t x, int32_t y) const {
-        return static_cast<size_t>(y - first_row) * static_cast<size_t>(width) +
-               static_cast<size_t>(x);
-    }
-};
-
-// Shades the pixels of one band: radiance, surfaces, normals, as wanted. `rough` is null where no
-// samples at edges follow.
-void shade_band(const Shading& shading, int32_t first_row, int32_t last_row, RoughBand* rough);
+// Shades the pixels of one band: radiance, surfaces, normals, as wanted.
+void shade_band(const Shading& shading, int32_t first_row, int32_t last_row);
 
 // What some samples of a pixel see besides what its centre sees.
 struct Fragment {
@@ -101,7 +82,13 @@ struct Fragment {
 // Shades some points of surfaces of a band: exposed radiance and the share of it that came from
 // around, four halves each.
 void shade_fragments(const Shading& shading, const Fragment* fragments, int64_t count,
-                     RoughBand& rough, uint16_t* light);
+                     uint16_t* light);
+
+// Whether rays tell what surfaces mirror.
+bool traces_reflections(const Shading& shading);
+
+// Gathers some points of surfaces, and what their materials are, as far as light asks for it.
+void gather_points(const Shading& shading, const Fragment* fragments, Chunk& chunk);
 
 // Draws see-through surfaces over a band of radiance.
 void draw_glass_band(const Shading& shading, const TriangleSet& glass, const DrawList& parts,

@@ -106,17 +106,17 @@ struct TracedRow {
     Vectors sum, normal, point;
 };
 
-// Where a chunk's pixels lie, and what rays of others met.
-struct TracedPlaces {
-    // Of rows above; brought up to date; null for points that lie anywhere. Before and behind it
-    // stand those of the chunks beside this one.
-    TracedRow* before;
-    RoughBand* rough;           // written for rows, read for points; null where there are none
-    const Fragment* fragments;  // of points
-};
+// From this roughness on many pixels share what rays of their lobes meet.
+constexpr float ROUGH = 0.36f;
 
-// Puts in its place what rays meet, where that is worth it; see shade_traced.cpp.
-void trace_reflections(const Shading& s, Chunk& c, const TracedPlaces& places);
+// Puts in its place what rays meet of smooth surfaces, where that is worth it; see
+// shade_traced.cpp. `before` has rows above and is brought up to date, null for points that lie
+// anywhere; before and behind it stand those of the chunks beside this one.
+void trace_reflections(const Shading& s, Chunk& c, TracedRow* before);
+
+// Puts in its place what rough surfaces mirror by the samples of a picture. `x` and `y` are of the
+// pixels in which the points lie.
+void mirror_rough(const Shading& s, const int32_t* x, const int32_t* y, Chunk& c);
 
 // The direction from which a surface mirrors light to the eye.
 LANES_INLINE Vec3x8 mirrored_ray(const Chunk& c, int32_t i) {
@@ -127,19 +127,25 @@ LANES_INLINE Vec3x8 mirrored_ray(const Chunk& c, int32_t i) {
 }
 
 // Share of the light around that a surface mirrors: `x` times its reflectance head-on, plus `y`.
-// Split-sum environment term, analytic fit for GGX (Karis, "Physically based shading on mobile").
 struct Mirroring {
     f8 x, y;
 };
 LANES_INLINE Mirroring mirroring(f8 roughness, f8 cosine) {
     const f8 nv = min8(cosine, splat(1.0f));
-    const f8 q0 = 1.0f - roughness, q1 = 0.0425f - 0.0275f * roughness,
-             q2 = 1.04f - 0.572f * roughness, q3 = 0.022f * roughness - 0.04f;
-    const f8 a = min8(q0 * q0, exp2_8(-9.28f * nv)) * q0 + q1;
-    return {-1.04f * a + q2, 1.04f * a + q3};
+    return {mirrored_scale(roughness, nv), mirrored_bias(roughness, nv)};
 }
 LANES_INLINE Vec3x8 reflectance_head_on(Vec3x8 base, f8 metallic) {
     return mix(vec3(0.04f, 0.04f, 0.04f), base, metallic);
+}
+
+// Share that is mirrored of all light that eight surfaces send back, where light is even.
+LANES_INLINE f8 mirrored_part(const Chunk& c, int32_t i) {
+    const Vec3x8 ray = c.ray.at(i), base = c.base.at(i);
+    const f8 cosine = abs8(dot(c.normal.at(i), ray) * inverse_length(ray)) + 1e-4f;
+    const f8 metallic = load(c.metallic + i), diffuse = luminance(base) * (1.0f - metallic);
+    const Mirroring term = mirroring(load(c.roughness + i), cosine);
+    const f8 sharp = luminance(reflectance_head_on(base, metallic) * term.x + term.y);
+    return sharp / (sharp + diffuse);
 }
 
 // Radiance seen where nothing was hit; see shaders/sky.frag.

@@ -1,35 +1,20 @@
 // Shading: what polished surfaces mirror of what stands around them, by rays.
 //
-// What a ray meets is lit like what the camera sees, and mirrors the pictures of the room. Rough
-// surfaces mirror these pictures themselves, but for what stands near; so do surfaces that bend
-// more from pixel to pixel than rays can stand for.
+// What a ray meets is lit like what the camera sees, and mirrors the pictures of the room. Surfaces
+// that bend more from pixel to pixel than rays can stand for mirror these pictures themselves. For
+// rough ones see shade_rough.cpp.
 #include <algorithm>
 #include <cstring>
 
-#include "rays.h"
-#include "shade_chunk.h"
-#include "texture.h"
-#include "traced_types.h"
+#include "traced_hits.h"
 
 namespace sailenv {
 namespace {
 
-vec3 vector_at(const Vectors& v, int32_t i) { return {v.x[i], v.y[i], v.z[i]}; }
-void put(Vectors& v, int32_t i, vec3 value) {
-    v.x[i] = value.x;
-    v.y[i] = value.y;
-    v.z[i] = value.z;
-}
-vec3 unit(vec3 a) { return a * (1.0f / std::sqrt(dot(a, a))); }
-
-constexpr float BEGIN_M = 5e-4f;  // a point lies that far from its surface, at most
-
-// Roughness: up to SMOOTH rays tell all that is mirrored, from ROUGH on what stands near alone, up
-// to ROUGHER all of that, and from ROUGHEST on nothing. The rest is as pictures of the room have
-// it.
-constexpr float SMOOTH = 0.22f, ROUGH = 0.36f, ROUGHER = 0.42f, ROUGHEST = 0.52f;
-// What is nearer than NEAR_M stands near, and what is farther than FAR_M does not: there few rays
-// would not find what is bright and small, as pictures do.
+// Roughness: up to SMOOTH rays tell all that is mirrored; up to ROUGH less and less of what is far.
+constexpr float SMOOTH = 0.22f;
+// What is nearer than NEAR_M is not far, and what is farther than FAR_M is: there few rays would
+// not find what is bright and small, as pictures do.
 constexpr float NEAR_M = 0.3f, FAR_M = 0.8f;
 // Angle between the mirrored rays of neighbouring pixels, from where on pictures count more and
 // more, and alone [rad].
@@ -39,20 +24,16 @@ constexpr float FLAT = 0.05f, BENT = 0.15f;
 constexpr float LEAST_SHARE = 0.25f, WHOLE_SHARE = 0.4f, LARGE_SHARE = 0.6f;
 // By how much more than these it is of rough surfaces.
 constexpr float MORE_OF_ROUGH = 0.2f;
-// A rough surface that is no metal and sends back more than BRIGHT otherwise, seen by a cosine of
-// more than STEEP: it mirrors at most 0.088 of the light, which is too small a share.
-constexpr float BRIGHT = 0.12f, STEEP = 0.45f;
 // Of samples at edges, which lie anywhere: angle between the mirrored rays of pixels [rad].
 constexpr float USUAL_ANGLE = 0.004f;
 
 // Where the lobe is wide, some pixels of every second row look along rays of it, the fewer the
 // wider it is; those around share what these meet. Where much is mirrored sharply, each pixel has
 // its own.
-constexpr int32_t LOBE = 16, SHARED_RAYS = 4, OWN_RAYS = 2;
-// Rays of a pixel of a rough surface above which none of that surface has looked; share that counts
-// of what the row above met, at most, and how far from there a third of it is left: what stands
-// NEAR_M away is mirrored by a spot of that size.
-constexpr int32_t FIRST_RAYS = 8;
+constexpr int32_t SHARED_RAYS = 4, OWN_RAYS = 2;
+constexpr float PART = 0.85f;  // of the lobe: a ray alone may not be of the steepest facets
+// Share that counts of what the row above met, at most, and how far from there a third of it is
+// left.
 constexpr float KEPT_SHARE = 0.87f, KEPT_M = 0.05f;
 // Pixels on either side that do for one where those that should look are of something else.
 constexpr int32_t BESIDE = 3;
@@ -62,23 +43,6 @@ constexpr float SECOND = 1.0f, FOURTH = 10.0f, EIGHTH = 24.0f;
 // Angle between pixels' rays from where on pixels beside are looked at, so that nothing is missed.
 constexpr float CURVED = 0.03f, FLAT_PLANE = 0.01f;
 constexpr float ALIKE = 0.97f;  // cosine between normals of those who share
-
-// Slopes of the microfacets that rays meet, over roughness squared: the 85 % of GGX's lobe that are
-// least steep, at points of the R2 sequence (Roberts 2018, "The unreasonable effectiveness of
-// quasirandom sequences").
-constexpr float SLOPE_X[LOBE] = {-1.21133f, 0.55872f,  -0.13554f, -0.02382f, 0.81008f,  -0.78981f,
-                                 0.56292f,  -0.17275f, 0.99556f,  -0.29785f, -0.06746f, 0.12027f,
-                                 -1.25322f, 0.95723f,  -0.58808f, 0.19721f};
-constexpr float SLOPE_Y[LOBE] = {-0.56852f, 0.67262f,  -0.52139f, 0.12766f,  -1.12682f, 0.44042f,
-                                 -0.03939f, -0.06680f, 1.04116f,  -0.88632f, 0.58596f,  -0.19466f,
-                                 0.81845f,  -0.13461f, -0.18134f, 0.17932f};
-
-// Cosines and sines of 0, 1, 2 … times the golden angle.
-constexpr int32_t TURNS = 8;
-constexpr float TURN_X[TURNS] = {1.0f,       -0.737369f, 0.087426f,  0.608439f,
-                                 -0.984713f, 0.843755f,  -0.259604f, -0.460907f};
-constexpr float TURN_Y[TURNS] = {0.0f,       0.675490f,  -0.996171f, 0.793601f,
-                                 -0.174182f, -0.536728f, 0.965715f,  -0.887448f};
 
 // What of a chunk is looked at by rays.
 struct TracedPixels {
@@ -90,34 +54,6 @@ struct TracedPixels {
     Vectors rays;
     TracedRow row;
 };
-
-struct SceneHit {
-    Hit hit;
-    const TracedInstance* instance = nullptr;
-};
-
-SceneHit closest_hit(const TracedScene& scene, vec3 from, vec3 ray, float reach) {
-    const float o[3] = {from.x, from.y, from.z}, d[3] = {ray.x, ray.y, ray.z};
-    const Ray r = ray_of(o, d, BEGIN_M);
-    SceneHit met;
-    met.hit.t = reach;
-    if (scene.count == 0) return met;
-    walk_tree<true>(scene.nodes, box_ray(r.o, r.d, 0.0f), 0.0f, met.hit.t,
-                    [&](int32_t leaf, float) {
-                        const TracedInstance& one = scene.instances[scene.order[leaf]];
-                        const float before = met.hit.t;
-                        meet_instance(one.placed, r, met.hit);
-                        if (met.hit.t < before) met.instance = &one;
-                        return met.hit.t;
-                    });
-    return met;
-}
-
-// Whether it is drawn. Backs are not: where one is met, the ray is inside of something.
-bool is_drawn(const SceneHit& met) {
-    return met.instance != nullptr && met.hit.front &&
-           met.instance->part_of[met.instance->placed.shape->order[met.hit.triangle]] >= 0;
-}
 
 // Whether two surfaces are one and turned alike, so that what the rays of one met counts for both.
 bool is_alike(int32_t id, const Vectors& normals, int32_t k, int32_t other_id,
@@ -139,100 +75,11 @@ float ray_spread(const Chunk& c, const Vectors& rays, int32_t i) {
     for (int32_t other = i - 1; other <= i + 1; other += 2) {
         if (other < 0 || other >= c.count || c.empty[other] || c.id[other] != c.id[i]) continue;
         // Of rougher parts no rays are known.
-        if (c.roughness[other] >= ROUGHEST || is_beside_face(c, i, other)) continue;
+        if (c.roughness[other] >= ROUGH || is_beside_face(c, i, other)) continue;
         const vec3 apart = vector_at(rays, other) - vector_at(rays, i);
         least = min(least, dot(apart, apart));
     }
     return least < 1e30f ? std::sqrt(least) : USUAL_ANGLE;
-}
-
-// What a triangle's corners know of a place on it, and what its part is made of.
-void set_hit(const SceneHit& met, vec3 from, vec3 ray, float distance, float angle, Chunk& c,
-             int32_t i) {
-    const TracedInstance& one = *met.instance;
-    const RayShape& shape = *one.placed.shape;
-    const int32_t triangle = shape.order[met.hit.triangle];
-    const Part& part = one.parts[one.part_of[triangle]];
-    const uint32_t* vertex = one.vertices + 3 * static_cast<int64_t>(triangle);
-    const float* corner[3];
-    for (int k = 0; k < 3; k++) corner[k] = part.vertices + 8 * static_cast<int64_t>(vertex[k]);
-    const float weight[3] = {1.0f - met.hit.second - met.hit.third, met.hit.second, met.hit.third};
-    float known[8];
-    for (int k = 0; k < 7; k++) {
-        known[k] = weight[0] * corner[0][k] + weight[1] * corner[1][k] + weight[2] * corner[2][k];
-    }
-    const float* m = one.placed.body_from_world;
-    const float own[3] = {known[0] * one.inverse_scale[0], known[1] * one.inverse_scale[1],
-                          known[2] * one.inverse_scale[2]};
-    const vec3 turned(own[0] * m[0] + own[1] * m[4] + own[2] * m[8],
-                      own[0] * m[1] + own[1] * m[5] + own[2] * m[9],
-                      own[0] * m[2] + own[1] * m[6] + own[2] * m[10]);
-    const float length = std::sqrt(dot(turned, turned));
-    const float towards_eye = dot(turned, ray) > 0.0f ? -1.0f : 1.0f;
-    const vec3 normal = turned * (towards_eye / (length > 1e-20f ? length : 1.0f));
-    put(c.normal, i, normal);
-    c.u[i] = known[3];
-    c.v[i] = known[4];
-    const bool charted = part.has_chart && one.at_baked_pose;
-    c.light_u[i] = charted ? known[5] * part.chart[2] + part.chart[0] : 0.0f;
-    // Of what has no chart the share that it hides of itself.
-    c.light_v[i] = charted          ? known[6] * part.chart[3] + part.chart[1]
-                   : part.has_chart ? 0.0f
-                                    : known[6];
-    put(c.base, i, {part.colour[0], part.colour[1], part.colour[2]});
-    c.roughness[i] = part.roughness;
-    c.metallic[i] = part.metallic;
-    c.emission[i] = part.emission;
-    c.id[i] = part.id;
-    c.empty[i] = 0;
-    put(c.ray, i, ray);
-    put(c.point, i, from + ray * met.hit.t);
-    c.colour_texels[i] = WHITE_TEXELS;
-    c.colour_log2[i] = NO_MAP;
-    c.ux[i] = c.vx[i] = c.uy[i] = c.vy[i] = 0.0f;
-    if (part.colour_map == nullptr) return;
-    c.coloured = true;
-    c.colour_texels[i] = part.colour_map->texels;
-    c.colour_log2[i] = static_cast<float>(part.colour_map->log2_size);
-    // A pixel covers a square of the surface.
-    const vec3 across = triangle_normal(shape, met.hit.triangle);
-    const float du = corner[1][3] - corner[0][3], dv = corner[1][4] - corner[0][4];
-    const float eu = corner[2][3] - corner[0][3], ev = corner[2][4] - corner[0][4];
-    const float area = std::sqrt(dot(across, across)), texture_area = std::fabs(du * ev - dv * eu);
-    const float side = angle * (distance + met.hit.t) * std::sqrt(texture_area / (area + 1e-20f));
-    c.ux[i] = c.vy[i] = side;
-}
-
-void set_empty(Chunk& c, int32_t i) {
-    c.empty[i] = -1;
-    c.id[i] = 0;
-    c.colour_texels[i] = WHITE_TEXELS;
-    c.colour_log2[i] = NO_MAP;
-    put(c.base, i, {0.0f, 0.0f, 0.0f});
-    c.roughness[i] = 1.0f;
-    c.metallic[i] = c.emission[i] = 0.0f;
-    put(c.normal, i, {0.0f, 0.0f, 1.0f});
-    put(c.ray, i, {0.0f, 0.0f, -1.0f});
-    put(c.point, i, {0.0f, 0.0f, 0.0f});
-    c.u[i] = c.v[i] = c.light_u[i] = c.light_v[i] = 0.0f;
-    c.ux[i] = c.vx[i] = c.uy[i] = c.vy[i] = 0.0f;
-}
-
-void begin_hits(Chunk& c) {
-    c.hit = c.parallel = true;
-    c.missed = c.coloured = c.detailed = false;
-}
-
-// The light that the first `count` places that were met send back along the rays.
-void shade_hits(const Shading& s, Chunk& c, int32_t count) {
-    c.count = count;
-    c.padded = (count + 7) & ~7;
-    for (int32_t k = count; k < c.padded; k++) set_empty(c, k);
-    if (c.coloured) colour_for_picture(c);
-    for (int32_t i = 0; i < c.padded; i += 8) finish_material(c, i);
-    light_from_bake(s, c);
-    mirror_surroundings(s, c);
-    reflect_to_eye(s, c);
 }
 
 // Each so many pixels look.
@@ -248,25 +95,14 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
     bool some = false;
     for (int32_t i = 0; i < c.padded; i += 8) {
         const f8 roughness = load(c.roughness + i);
-        const i8 smooth = (roughness < ROUGHEST) & ~load(c.empty + i);
+        const i8 smooth = (roughness < ROUGH) & ~load(c.empty + i);
         store(pixels.share + i, splat(0.0f));
         if (!any(smooth)) continue;
         // Those beside look at them, whatever comes of these.
         pixels.rays.set(i, mirrored_ray(c, i));
-        const Vec3x8 ray = c.ray.at(i);
-        const f8 cosine = abs8(dot(c.normal.at(i), ray) * inverse_length(ray)) + 1e-4f;
-        const f8 metallic = load(c.metallic + i);
-        const f8 diffuse = luminance(c.base.at(i)) * (1.0f - metallic);
-        const i8 bright =
-            (roughness >= ROUGH) & (metallic == 0.0f) & (diffuse > BRIGHT) & (cosine > STEEP);
-        if (!any(smooth & ~bright)) continue;
-        const Mirroring term = mirroring(roughness, cosine);
-        const Vec3x8 f0 = reflectance_head_on(c.base.at(i), metallic);
-        const f8 sharp = luminance(f0 * term.x + term.y);
-        const f8 mirrored = sharp / (sharp + diffuse);
+        const f8 mirrored = mirrored_part(c, i);
         const f8 more = MORE_OF_ROUGH * smoothstep(SMOOTH, ROUGH, roughness);
-        const f8 share = smoothstep(LEAST_SHARE, WHOLE_SHARE, mirrored - more) *
-                         (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness));
+        const f8 share = smoothstep(LEAST_SHARE, WHOLE_SHARE, mirrored - more);
         // Rays of a relief lead everywhere: too few would be alike.
         const i8 uneven =
             c.detailed ? (load(c.relief + i) > 0.0f) & (mirrored < LARGE_SHARE) : i8{};
@@ -331,68 +167,38 @@ void count_rays(const Chunk& c, bool of_row, const TracedRow* last, TracedPixels
     const TracedRow* above = (c.y & 1) != 0 ? last : nullptr;
     for (int32_t i = 0; i < c.count; i++) {
         if (!(pixels.share[i] > 0.0f)) continue;
-        const bool much = pixels.mirrored[i] >= LARGE_SHARE, rough = c.roughness[i] >= ROUGH;
+        const bool much = pixels.mirrored[i] >= LARGE_SHARE;
         pixels.ray_count[i] = much && pixels.angle[i] > CURVED ? OWN_RAYS : 1;
         if (!of_row || pixels.step[i] == 1) continue;
         const bool flat = pixels.angle[i] < FLAT_PLANE || pixels.step[i] > 2;
-        if (much && flat && !rough) {
+        if (much && flat) {
             pixels.ray_count[i] = SHARED_RAYS;
-        } else if (much || rough || pixels.step[i] > 2) {
+        } else if (much || pixels.step[i] > 2) {
             pixels.ray_count[i] = OWN_RAYS;
         }
         if (neighbours_do(c, pixels, above, i) ||
             (pixels.step[i] > 2 && one_beside_does(c, pixels, above, i))) {
             pixels.ray_count[i] = 0;
-        } else if (rough && pixels.step[i] > 2 && (last == nullptr || !shares(c, i, *last, i))) {
-            pixels.ray_count[i] = FIRST_RAYS;
         }
     }
 }
 
 // One of the rays of a pixel's lobe.
-vec3 lobe_ray(const Shading& s, const Chunk& c, const TracedPixels& pixels, int32_t i,
-              int32_t number) {
+vec3 ray_of_pixel(const Shading& s, const Chunk& c, const TracedPixels& pixels, int32_t i,
+                  int32_t number) {
     const float scale = s.table == nullptr ? 1.0f : 0.5f * static_cast<float>(s.width);
     const int32_t column = static_cast<int32_t>(std::floor(c.at_x[i] * scale + 0.5f));
     const int32_t row = static_cast<int32_t>(std::floor(c.at_y[i] * scale + 0.5f));
     // Those who share have other rays each.
     const int32_t begin =
         pixels.step[i] > 1 ? column / pixels.step[i] + 2 * (row >> 1) : 5 * column + 7 * row;
-    const int32_t k = (begin + number * (LOBE / pixels.ray_count[i])) & (LOBE - 1);
     const float rough = c.roughness[i] * c.roughness[i], least = 0.25f * pixels.angle[i];
-    const float wide = rough > least ? rough : least;
     // Other rays in each row that looks.
-    const int32_t turn = pixels.step[i] > 2 ? (row >> 1) & (TURNS - 1) : 0;
-    const float x = wide * (SLOPE_X[k] * TURN_X[turn] - SLOPE_Y[k] * TURN_Y[turn]);
-    const float y = wide * (SLOPE_X[k] * TURN_Y[turn] + SLOPE_Y[k] * TURN_X[turn]);
-    const vec3 n = vector_at(c.normal, i);
-    // Two axes across the normal (Duff et al. 2017, "Building an orthonormal basis, revisited").
-    const float sign = n.z < 0.0f ? -1.0f : 1.0f, a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-    const vec3 first(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    const vec3 second(b, sign + n.y * n.y * a, -n.y);
-    const vec3 facet = unit(n + first * x + second * y);
-    const vec3 along = unit(vector_at(c.ray, i));
-    const vec3 ray = along - facet * (2.0f * dot(along, facet));
+    const int32_t turn = pixels.step[i] > 2 ? row >> 1 : 0;
+    const vec3 ray = lobe_ray(c, i, begin + number * (LOBE / pixels.ray_count[i]), turn,
+                              rough > least ? rough : least, PART);
     // Below the surface there is nothing to be seen.
-    if (dot(ray, n) < 0.02f) return vector_at(pixels.rays, i);
-    return ray;
-}
-
-// How much a ray of the lobe counts: its directions are as dense as the slopes of microfacets, seen
-// from above (Walter et al. 2007, "Microfacet models for refraction through rough surfaces").
-float lobe_weight(const Chunk& c, int32_t i, vec3 ray) {
-    const vec3 normal = vector_at(c.normal, i);
-    // All of a narrow lobe counts nearly alike.
-    if (c.roughness[i] < SMOOTH) return dot(normal, ray);
-    const vec3 view = unit(vector_at(c.ray, i)) * -1.0f;
-    const vec3 facet = unit(ray + view);
-    const float nl = max(dot(normal, ray), 1e-3f), vh = max(dot(view, facet), 0.0f);
-    const float square = c.roughness[i] * c.roughness[i], a2 = square * square;
-    const float seen = 2.0f * nl / (nl + std::sqrt(a2 + (1.0f - a2) * nl * nl));
-    const float base = luminance(vector_at(c.base, i));
-    const float f0 = 0.04f + (base - 0.04f) * c.metallic[i];
-    const float fresnel = f0 + (1.0f - f0) * schlick_share(vh);
-    return fresnel * seen * vh / max(dot(normal, facet), 1e-3f);
+    return dot(ray, vector_at(c.normal, i)) < 0.02f ? vector_at(pixels.rays, i) : ray;
 }
 
 // By how much what a ray meets counts, not the pictures.
@@ -410,10 +216,11 @@ void trace_rays(const Shading& s, const Chunk& c, int32_t number, TracedPixels& 
     for (int32_t i = 0; i < c.count; i++) {
         if (number >= pixels.ray_count[i]) continue;
         const vec3 begin = vector_at(c.point, i);
-        const vec3 ray = lobe_ray(s, c, pixels, i, number);
-        const SceneHit met =
-            closest_hit(*s.light->traced, begin, ray, c.roughness[i] < ROUGH ? ENDLESS : FAR_M);
-        const float weight = lobe_weight(c, i, ray);
+        const vec3 ray = ray_of_pixel(s, c, pixels, i, number);
+        const SceneHit met = closest_hit(*s.light->traced, begin, ray, ENDLESS);
+        // All of a narrow lobe counts nearly alike.
+        const float weight =
+            c.roughness[i] < SMOOTH ? dot(vector_at(c.normal, i), ray) : lobe_weight(c, i, ray);
         const float hit = is_drawn(met) ? weight * hit_share(c.roughness[i], met.hit.t) : 0.0f;
         pixels.row.weight[i] += weight;
         const vec3 sum = vector_at(pixels.row.sum, i);
@@ -522,38 +329,11 @@ void add_rows_above(const Chunk& c, const TracedRow& last, TracedPixels& pixels)
     }
 }
 
-// Takes over what pixels around a rough point at an edge mirror by rays, where it has such.
-void take_from_pixels(const RoughBand& rough, const Fragment* fragments, Chunk& c,
-                      TracedPixels& pixels) {
-    for (int32_t i = 0; i < c.count; i++) {
-        if (!(pixels.share[i] > 0.0f) || c.roughness[i] < ROUGH) continue;
-        vec3 sum(0.0f, 0.0f, 0.0f);
-        float count = 0.0f;
-        for (int32_t k = 0; k < 9; k++) {
-            const int32_t x = fragments[i].pixel_x + k % 3 - 1;
-            const int32_t y = fragments[i].pixel_y + k / 3 - 1;
-            if (x < 0 || x >= rough.width || !rough.has_row(y)) continue;
-            const size_t at = rough.place(x, y);
-            if (rough.ids[at] != c.id[i]) continue;
-            if (!(dot(rough.normals[at], vector_at(c.normal, i)) > ALIKE)) continue;
-            sum = sum + rough.mirrored[at];
-            count += 1.0f;
-        }
-        if (!(count > 0.0f)) continue;
-        put(c.mirrored, i, sum * (1.0f / count));
-        pixels.share[i] = 0.0f;
-    }
-}
-
 }  // namespace
 
-void trace_reflections(const Shading& s, Chunk& c, const TracedPlaces& places) {
+void trace_reflections(const Shading& s, Chunk& c, TracedRow* before) {
     TracedPixels pixels;
-    TracedRow* before = places.before;
     if (!choose_pixels(c, before != nullptr, pixels)) return;
-    if (before == nullptr && places.rough != nullptr) {
-        take_from_pixels(*places.rough, places.fragments, c, pixels);
-    }
     const bool follows = before != nullptr && (before->y == c.y - 1 || before->y == c.y - 2);
     const TracedRow* last = follows ? before : nullptr;
     count_rays(c, before != nullptr, last, pixels);
@@ -567,11 +347,6 @@ void trace_reflections(const Shading& s, Chunk& c, const TracedPlaces& places) {
         if (!(met.weight > 0.0f)) continue;
         const vec3 mean = met.sum * (1.0f / met.weight);
         put(c.mirrored, i, mix(vector_at(c.mirrored, i), mean, pixels.share[i]));
-        if (before == nullptr || places.rough == nullptr || c.roughness[i] < ROUGH) continue;
-        const size_t at = places.rough->place(c.x + i, c.y);
-        places.rough->ids[at] = c.id[i];
-        places.rough->normals[at] = vector_at(c.normal, i);
-        places.rough->mirrored[at] = vector_at(c.mirrored, i);
     }
     if (!looks) return;
     *before = pixels.row;

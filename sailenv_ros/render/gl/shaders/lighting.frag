@@ -99,13 +99,6 @@ vec3 lamp_light(Lamp lamp, Surface s) {
     return reflected_light(s, towards, lamp.colour * share);
 }
 
-// Split-sum environment term, analytic fit for GGX (Karis, "Physically based shading on mobile").
-vec2 environment_term(float nv, float roughness) {
-    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-    float a = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
-    return vec2(-1.04, 1.04) * a + r.zw;
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float z = texelFetch(surface, pixel, 0).x;
@@ -162,7 +155,8 @@ void main() {
     vec3 reflected =
         ambient + sky_share * mix(sky(mirrored), soft, min(1.0, roughness * 1.4));
 #endif
-    vec2 term = environment_term(min(nv, 1.0), roughness);
+    float cosine = min(nv, 1.0);
+    vec2 term = vec2(mirrored_scale(roughness, cosine), mirrored_bias(roughness, cosine));
     // What single bounces in the microfacets lose comes back from further ones, so that a white
     // surface in uniform light vanishes (Fdez-Aguera 2019, "A multiple-scattering microfacet model").
     vec3 once = f0 * term.x + term.y;

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from sailenv_ros.light.bake.direct import Points
-from sailenv_ros.light.bake.light_shapes import LAMP_RADIUS_M, SUN_RADIUS, light_record
 from sailenv_ros.native.gather_kernels import hemisphere_rays
 from sailenv_ros.native.light_kernels import direct_light, light_rays, light_samples
 from sailenv_ros.rays.ray_patterns import low_discrepancy_points
+from sailenv_ros.types.light_shapes import LAMP_RADIUS_M, SUN_RADIUS, light_record
 from sailenv_ros.types.lights import Light, area_sides
 
 RAYS = 16

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.light_shapes import light_record
 from sailenv_ros.light.relight import object_shadows
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
@@ -28,6 +27,7 @@ from sailenv_ros.native.relight_kernels import gather_change
 from sailenv_ros.rays.ray_patterns import sequence_points
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.bake_scenes import DARK
