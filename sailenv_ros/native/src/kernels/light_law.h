@@ -114,6 +114,17 @@ LIGHT_LAW Real schlick_share(Real cosine) {
     return square * square * grazing;
 }
 
+// GGX's distribution of microfacets, times height-correlated Smith visibility (Heitz 2014,
+// "Understanding the masking-shadowing function in microfacet-based BRDFs"): what a surface sends
+// of light from one direction, but for Fresnel's term and the cosine `nl`. `a2` is its roughness to
+// the fourth power; the others are cosines of light, view and the direction half-way to the normal.
+LIGHT_LAW Real microfacet_lobe(Real a2, Real nl, Real nv, Real nh) {
+    Real rest = 1.0f - a2;
+    Real spread = 1.0f - nh * nh * rest;
+    Real smith = nl * sqrt(nv * nv * rest + a2) + nv * sqrt(nl * nl * rest + a2);
+    return 0.5f * a2 / (3.14159265f * spread * spread * smith);
+}
+
 // Shares of even light around that a GGX surface with height-correlated Smith shadowing mirrors at
 // a cosine (split-sum environment term, Karis 2013): `mirrored_scale` times its reflectance
 // head-on, plus `mirrored_bias`. Polynomials fitted to the integrals, their sum for a reflectance

@@ -2,7 +2,7 @@
 //
 // A band is walked down in chunks of pixels, which go through one stage after the other:
 // shade_gather.cpp, shade_material.cpp, shade_around.cpp, shade_reflections.cpp, shade_traced.cpp,
-// shade_combine.cpp.
+// shade_rough.cpp, shade_combine.cpp.
 #include "shade.h"
 
 #include <algorithm>

@@ -12,7 +12,7 @@ struct Surface8 {
     f8 a2, nv;  // roughness to the fourth power, cosine of the viewing angle
 };
 
-// GGX distribution, height-correlated Smith visibility, Schlick's Fresnel term.
+// Diffuse below Schlick's Fresnel term, mirrored above it.
 template <class Direction, class Power>
 LANES_INLINE void add_reflected(const Surface8& s, Direction towards, Power power, Vec3x8& sum) {
     const f8 nl = clamp8(dot(s.normal, towards), 0.0f, 1.0f);
@@ -20,11 +20,7 @@ LANES_INLINE void add_reflected(const Surface8& s, Direction towards, Power powe
     halfway = halfway * inverse_length(halfway);
     const f8 nh = clamp8(dot(s.normal, halfway), 0.0f, 1.0f);
     const f8 vh = clamp8(dot(s.view, halfway), 0.0f, 1.0f);
-    const f8 rest = 1.0f - s.a2;
-    const f8 spread = 1.0f - nh * nh * rest;
-    const f8 smith = nl * sqrt8(s.nv * s.nv * rest + s.a2) + s.nv * sqrt8(nl * nl * rest + s.a2);
-    // Distribution times visibility.
-    const f8 lobe = 0.5f * s.a2 / (PI * spread * spread * smith);
+    const f8 lobe = microfacet_lobe(s.a2, nl, s.nv, nh);
     const Vec3x8 fresnel = s.f0 + (1.0f - s.f0) * schlick_share(vh);
     sum = sum + power * nl * (s.diffuse * (1.0f - fresnel) * (1.0f / PI) + fresnel * lobe);
 }

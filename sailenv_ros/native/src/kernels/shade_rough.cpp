@@ -27,8 +27,6 @@ constexpr float LEAST_SHARE = 0.45f, WHOLE_SHARE = 0.6f;
 // What is seen by a cosine of more than STEEP mirrors less than LEAST_SHARE if it sends back more
 // than BRIGHT otherwise.
 constexpr float BRIGHT = 0.12f, STEEP = 0.45f;
-// Above it rays of a relief, which lead everywhere, are worth it.
-constexpr float LARGE_SHARE = 0.6f;
 // What is nearer than NEAR_M stands near, and what is farther than FAR_M does not.
 constexpr float NEAR_M = 0.1f, FAR_M = 0.3f;
 // Roughness of the pictures of the room that rays see where they meet nothing.
@@ -40,7 +38,6 @@ constexpr float FAR_REACH_M = 0.1f;
 // Samples enough to share; with fewer around it, a sample has up to so many times as many rays.
 constexpr float ENOUGH = 8.0f;
 constexpr int32_t MOST_TIMES = 4;
-constexpr float ALIKE = 0.97f;  // cosine between normals of those who share
 // Pixels take over what samples mirror that lie nearer [pixels]. Samples with normals turned by
 // more than this cosine, and those that lie off the pixel's plane by more than this share of its
 // depth, count so little that they do only where there are no others.
@@ -60,10 +57,9 @@ f8 traced_share(const Chunk& c, int32_t i) {
     const i8 steep = along * along > dot(ray, ray) * (STEEP * STEEP);
     if (!any(rough & ~(steep & (diffuse > BRIGHT)))) return splat(0.0f);
     const f8 mirrored = mirrored_part(c, i);
-    const i8 uneven = c.detailed ? (load(c.relief + i) > 0.0f) & (mirrored < LARGE_SHARE) : i8{};
     const f8 share = smoothstep(LEAST_SHARE, WHOLE_SHARE, mirrored) *
                      (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness));
-    return rough & ~uneven ? share : splat(0.0f);
+    return rough & ~leads_everywhere(c, i, mirrored) ? share : splat(0.0f);
 }
 
 // Whether a triangle's part may be rough.
@@ -179,7 +175,7 @@ int32_t follow_rays(const Shading& s, const Chunk& c, RoughSample* const* sample
 // What pictures of the room without lamps have where rays lead that meet nothing.
 void see_pictures(const Light& light, const Chunk& c, const LobeRay* rays, int32_t count,
                   Vectors& seen) {
-    constexpr int32_t LAMPLESS = 0;
+    constexpr int32_t LAMPLESS = 0;  // as reflection_points.py has it
     for (int32_t first = 0; first < count; first += 8) {
         Vec3x8 from{}, along{};
         bool missed = false;
@@ -227,11 +223,10 @@ vec3 highlights(const Light& light, const Chunk& c, int32_t i) {
     const vec3 at = vector_at(c.point, i), normal = vector_at(c.normal, i);
     const vec3 view = unit(vector_at(c.ray, i)) * -1.0f;
     const float nv = std::fabs(dot(normal, view)) + 1e-4f, roughness = c.roughness[i];
-    const float base = luminance(vector_at(c.base, i));
-    const float f0 = 0.04f + (base - 0.04f) * c.metallic[i];
+    const float f0 = head_on_luminance(c, i);
     const float even =
         f0 * mirrored_scale(roughness, min(nv, 1.0f)) + mirrored_bias(roughness, min(nv, 1.0f));
-    const float a2 = roughness * roughness * roughness * roughness, rest = 1.0f - a2;
+    const float a2 = roughness * roughness * roughness * roughness;
     for (int64_t k = 0; k < light.mirrored_light_count; k++) {
         const Lamp& lamp = light.mirrored_lights[k].lamp;
         if (lamp.kind != LIGHT_POINT && lamp.kind != LIGHT_SPOT) continue;
@@ -241,11 +236,8 @@ vec3 highlights(const Light& light, const Chunk& c, int32_t i) {
         const float nl = dot(normal, towards), nh = dot(normal, halfway), vh = dot(view, halfway);
         const float share = lamp_falloff(lamp, square, -dot(towards, lamp.direction));
         if (!(nl > 0.0f && share > 0.0f)) continue;
-        const float spread = 1.0f - nh * nh * rest;
-        const float smith =
-            nl * std::sqrt(nv * nv * rest + a2) + nv * std::sqrt(nl * nl * rest + a2);
         const float fresnel = f0 + (1.0f - f0) * schlick_share(vh);
-        const float sent = fresnel * 0.5f * a2 / (PI * spread * spread * smith) * nl * share / even;
+        const float sent = fresnel * microfacet_lobe(a2, nl, nv, nh) * nl * share / even;
         if (sent < LEAST_HIGHLIGHT) continue;
         if (closest_hit(*light.traced, at, towards, distance).instance != nullptr) continue;
         sum = sum + lamp.colour * sent;

@@ -20,9 +20,9 @@ constexpr float NEAR_M = 0.3f, FAR_M = 0.8f;
 // more, and alone [rad].
 constexpr float FLAT = 0.05f, BENT = 0.15f;
 // Share that is mirrored of all light that is sent back, where light is even: from where on rays
-// are worth it, and several are.
-constexpr float LEAST_SHARE = 0.25f, WHOLE_SHARE = 0.4f, LARGE_SHARE = 0.6f;
-// By how much more than these it is of rough surfaces.
+// are worth it, and count alone.
+constexpr float LEAST_SHARE = 0.25f, WHOLE_SHARE = 0.4f;
+// By how much more than these it has to be near ROUGH.
 constexpr float MORE_OF_ROUGH = 0.2f;
 // Of samples at edges, which lie anywhere: angle between the mirrored rays of pixels [rad].
 constexpr float USUAL_ANGLE = 0.004f;
@@ -42,7 +42,6 @@ constexpr int32_t BESIDE = 3;
 constexpr float SECOND = 1.0f, FOURTH = 10.0f, EIGHTH = 24.0f;
 // Angle between pixels' rays from where on pixels beside are looked at, so that nothing is missed.
 constexpr float CURVED = 0.03f, FLAT_PLANE = 0.01f;
-constexpr float ALIKE = 0.97f;  // cosine between normals of those who share
 
 // What of a chunk is looked at by rays.
 struct TracedPixels {
@@ -103,10 +102,7 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
         const f8 mirrored = mirrored_part(c, i);
         const f8 more = MORE_OF_ROUGH * smoothstep(SMOOTH, ROUGH, roughness);
         const f8 share = smoothstep(LEAST_SHARE, WHOLE_SHARE, mirrored - more);
-        // Rays of a relief lead everywhere: too few would be alike.
-        const i8 uneven =
-            c.detailed ? (load(c.relief + i) > 0.0f) & (mirrored < LARGE_SHARE) : i8{};
-        const i8 chosen = smooth & ~uneven;
+        const i8 chosen = smooth & ~leads_everywhere(c, i, mirrored);
         store(pixels.share + i, chosen ? share : splat(0.0f));
         store(pixels.mirrored + i, mirrored);
         some |= any(chosen & (share > 0.0f));

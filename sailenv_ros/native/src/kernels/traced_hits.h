@@ -72,6 +72,21 @@ static inline vec3 lobe_ray(const Chunk& c, int32_t i, int32_t number, int32_t t
     return along - facet * (2.0f * dot(along, facet));
 }
 
+// Luminance of a surface's reflectance head-on.
+static inline float head_on_luminance(const Chunk& c, int32_t i) {
+    return 0.04f + (luminance(vector_at(c.base, i)) - 0.04f) * c.metallic[i];
+}
+
+constexpr float ALIKE = 0.97f;  // cosine between normals of those who share what rays meet
+
+// From this share of all light that is sent back on, what is mirrored is worth more rays.
+constexpr float LARGE_SHARE = 0.6f;
+
+// Whether rays of a relief lead everywhere: too few would be alike, where little is mirrored.
+LANES_INLINE i8 leads_everywhere(const Chunk& c, int32_t i, f8 mirrored) {
+    return c.detailed ? (load(c.relief + i) > 0.0f) & (mirrored < LARGE_SHARE) : i8{};
+}
+
 // How much a ray of the lobe counts: its directions are as dense as the slopes of microfacets, seen
 // from above (Walter et al. 2007, "Microfacet models for refraction through rough surfaces").
 static inline float lobe_weight(const Chunk& c, int32_t i, vec3 ray) {
@@ -81,8 +96,7 @@ static inline float lobe_weight(const Chunk& c, int32_t i, vec3 ray) {
     const float nl = max(dot(normal, ray), 1e-3f), vh = max(dot(view, facet), 0.0f);
     const float square = c.roughness[i] * c.roughness[i], a2 = square * square;
     const float seen = 2.0f * nl / (nl + std::sqrt(a2 + (1.0f - a2) * nl * nl));
-    const float base = luminance(vector_at(c.base, i));
-    const float f0 = 0.04f + (base - 0.04f) * c.metallic[i];
+    const float f0 = head_on_luminance(c, i);
     const float fresnel = f0 + (1.0f - f0) * schlick_share(vh);
     return fresnel * seen * vh / max(dot(normal, facet), 1e-3f);
 }

@@ -82,12 +82,9 @@ vec3 reflected_light(Surface s, vec3 towards, vec3 power) {
     vec3 halfway = normalize(towards + s.view);
     float nh = clamp(dot(s.normal, halfway), 0.0, 1.0);
     float vh = clamp(dot(s.view, halfway), 0.0, 1.0);
-    float spread = nh * nh * (s.a2 - 1.0) + 1.0;
-    float distribution = s.a2 / (PI * spread * spread);
-    float visibility = 0.5 / (nl * sqrt(s.nv * s.nv * (1.0 - s.a2) + s.a2) +
-                              s.nv * sqrt(nl * nl * (1.0 - s.a2) + s.a2));
+    float lobe = microfacet_lobe(s.a2, nl, s.nv, nh);
     vec3 fresnel = s.f0 + (1.0 - s.f0) * schlick_share(vh);
-    return power * nl * (s.diffuse * (1.0 - fresnel) / PI + fresnel * distribution * visibility);
+    return power * nl * (s.diffuse * (1.0 - fresnel) / PI + fresnel * lobe);
 }
 
 vec3 lamp_light(Lamp lamp, Surface s) {
