@@ -31,7 +31,11 @@ may be."""
 MOST_LIT = 12_000_000
 """Greatest number of texels times layers of light: 8 bytes each, some 100 MB."""
 
-TRIALS = 8
+COARSEST_STEP = 7
+"""Greatest number of steps by which the texels of one model grow."""
+
+BORDER = 3.0
+"""Number of texels, about, that a piece's borders add to either side; they do not shrink."""
 
 COARSER = 1.15
 """Growth of the texels until everything fits."""
@@ -139,15 +143,22 @@ def _unwrapped(
     if model.triangle_count <= SIMPLE_TRIANGLES:
         return unwrapped(model, scale, coarser * settings.texel_m, seen)
     texel = coarser * settings.fine_texel_m
-    trial = 0
+    step = 0
     while True:
-        chart = unwrapped(model, scale, texel * COARSER**trial, seen)
-        size = chart.width * chart.height
-        if size <= MOST_TEXELS or trial == TRIALS - 1:
+        chart = unwrapped(model, scale, texel * COARSER**step, seen)
+        if step == COARSEST_STEP or chart.width * chart.height <= MOST_TEXELS:
             return chart
-        # Borders do not shrink with the texels: it takes at least so many steps.
-        steps = math.floor(math.log(size / MOST_TEXELS) / (2.0 * math.log(COARSER)))
-        trial = min(trial + max(steps, 1), TRIALS - 1)
+        step += _steps_until_it_fits(chart, COARSEST_STEP - step)
+
+
+def _steps_until_it_fits(chart: Chart, most: int) -> int:
+    """Return by how many steps texels must grow, about; from 1 to `most`."""
+    size = float(chart.width * chart.height)
+    border = min(BORDER / math.sqrt(size / chart.pieces), 1.0)
+    for step in range(1, most):
+        if size * ((1.0 - border) / COARSER**step + border) ** 2 <= MOST_TEXELS:
+            return step
+    return most
 
 
 def _place(

@@ -128,7 +128,9 @@ class _Bake:
         self._grid = probe_grid(geometry.bounds(), settings)
         self._spots = probe_positions(self._grid)
         stages.begin("visibility", 0.02)
-        self._visibility = probe_visibility(geometry, scene, self._spots, settings.probe_rays)
+        self._visibility = probe_visibility(
+            geometry, scene, self._spots, settings.probe_rays, stages.workers
+        )
         visible = visible_triangles(geometry, self._visibility.seen)
         layout = laid_out(
             geometry, settings, visible, stages.begin("surfaces", 0.14),
@@ -247,30 +249,16 @@ class _Bake:
         of_texel : (texels,) int32 or None
             Which of the solver's points stands for each texel; None if each stands for itself.
         """
-        texels, geometry, grid = self._texels, self._geometry, self._grid
-        chosen = slice(None) if of_texel is None else of_texel
-        valid, channels = solver.valid[chosen], solver.bounced.shape[1]
-        # An area light's shadows are as soft as the texels are fine, and its rays are few.
-        smooth = [of_texel is not None or _is_soft(entry) for entry in solver.lights]
-        shares = [entry.visibility for entry in solver.lights if entry.visibility is not None]
-        direct = np.stack([entry.direct for entry in solver.lights] + shares, axis=1)[chosen]
-        smooth += [of_texel is not None] * len(shares)
-        noisy = np.concatenate([solver.bounced[chosen], direct[:, smooth]], axis=1)
-        noisy = denoised(
-            geometry, texels, noisy, valid, solver.nearness[chosen], self._stages.workers
-        )
-        direct[:, smooth] = noisy[:, channels:]
-        known = np.concatenate([noisy[:, :channels], direct], axis=1)
-        known = dilated(geometry, texels, known, valid)
+        texels, grid = self._texels, self._grid
+        valid = solver.valid if of_texel is None else solver.valid[of_texel]
+        known, columns = self._known(solver, valid, of_texel)
         probe_direct, probe_bounced = self._probes(solver, of_texel)
-        count = len(solver.lights)
-        visibility = iter(range(channels + count, known.shape[1]))
         layers = []
         for place, entry in enumerate(solver.lights):
             mine = slice(3 * place, 3 * place + 3)
             share = edges = None
             if entry.visibility is not None:
-                rounded = np.rint(known[:, next(visibility)] * 255.0)
+                rounded = np.rint(known[:, columns[place, "visibility"]] * 255.0)
                 if of_texel is None:
                     edges = self._sun_edges(entry, valid)
                     marked = edges.index[texels.rows, texels.columns] >= 0
@@ -280,7 +268,7 @@ class _Bake:
             layers.append(
                 LightLayer(
                     light=entry.light,
-                    direct=self._map_of(known[:, channels + place], np.float16),
+                    direct=self._map_of(known[:, columns[place, "direct"]], np.float16),
                     bounced=self._map_of(known[:, mine], np.float16),
                     probe_direct=np.repeat(
                         probe_direct[place].reshape(*grid.shape, 4, 1), 3, axis=-1
@@ -300,6 +288,46 @@ class _Bake:
             probes=grid,
             seen=self._seen(solver, of_texel),
         )
+
+    def _known(
+        self, solver: Solver, valid: NDArray[np.bool_], of_texel: NDArray[np.int32] | None
+    ) -> tuple[Floats, dict[tuple[int, str], int]]:
+        """Return the light of texels, denoised and dilated, and what its columns hold.
+
+        Returns
+        -------
+        known : (texels, K) float32
+            First the bounced light of each light.
+        columns : dict of (int, str) to int
+            Of the light with this number its `direct` and, if it is directional, `visibility`.
+        """
+        channels = solver.bounced.shape[1]
+        given = {
+            (place, name): values
+            for place, entry in enumerate(solver.lights)
+            for name, values in (("direct", entry.direct), ("visibility", entry.visibility))
+            if values is not None
+        }
+        # An area light's shadows are as soft as the texels are fine, and its rays are few.
+        noisy = [
+            key for key in given
+            if of_texel is not None or (key[1] == "direct" and _is_soft(solver.lights[key[0]]))
+        ]  # fmt: skip
+        columns = [*noisy, *(key for key in given if key not in noisy)]
+        known = np.empty((len(solver.bounced), channels + len(columns)), np.float32)
+        known[:, :channels] = solver.bounced
+        for column, key in enumerate(columns, channels):
+            known[:, column] = given[key]
+        nearness = solver.nearness
+        if of_texel is not None:
+            known, nearness = known[of_texel], nearness[of_texel]
+        rough = slice(0, channels + len(noisy))
+        known[:, rough] = denoised(
+            self._geometry, self._texels, np.ascontiguousarray(known[:, rough]), valid, nearness,
+            self._stages.workers,
+        )  # fmt: skip
+        known = dilated(self._geometry, self._texels, known, valid)
+        return known, {key: column for column, key in enumerate(columns, channels)}
 
     def _seen(self, solver: Solver, of_texel: NDArray[np.int32] | None) -> NDArray[np.float16]:
         """Return (K, L, 3): the radiance that eyes see."""

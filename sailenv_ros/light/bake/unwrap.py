@@ -41,11 +41,14 @@ class Chart:
     unwrapping : Unwrapping
     width, height : int
         Of the smallest picture of it in which bilinear look-ups never meet other pieces [texels].
+    pieces : int
+        Number of surfaces that were laid flat each by itself.
     """
 
     unwrapping: Unwrapping
     width: int
     height: int
+    pieces: int
 
 
 def unwrapped(
@@ -106,6 +109,7 @@ def unwrapped(
         ),
         width=atlas.width,
         height=atlas.height,
+        pieces=atlas.chart_count,
     )
 
 

@@ -14,6 +14,7 @@ from scipy.sparse.csgraph import connected_components
 
 from sailenv_ros.light.bake.back_to_back import back_to_back_faces
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
+from sailenv_ros.light.bake.worker_pool import in_chunks
 from sailenv_ros.rays.light_rays import RayScene
 from sailenv_ros.rays.ray_patterns import fibonacci_sphere
 from sailenv_ros.rays.static_geometry import StaticGeometry
@@ -46,7 +47,11 @@ class ProbeVisibility:
 
 
 def probe_visibility(
-    geometry: StaticGeometry, scene: RayScene, positions: NDArray[np.float32], rays: int
+    geometry: StaticGeometry,
+    scene: RayScene,
+    positions: NDArray[np.float32],
+    rays: int,
+    workers: int = 1,
 ) -> ProbeVisibility:
     """Look around from points in the air.
 
@@ -61,10 +66,9 @@ def probe_visibility(
     count = len(positions)
     inside, sky = np.zeros(count, bool), np.zeros(count)
     met = np.full((count, rays), -1, dtype=np.int32)
-    step = max(CHUNK_RAYS // rays, 1)
-    for first in range(0, count, step):
-        own = slice(first, min(first + step, count))
-        size = own.stop - first
+
+    def look(first: int, end: int) -> None:
+        own, size = slice(first, end), end - first
         hits = scene.hits(np.repeat(positions[own], rays, axis=0), np.tile(directions, (size, 1)))
         triangle = hits.triangle.reshape(size, rays)
         met[own] = triangle
@@ -74,6 +78,8 @@ def probe_visibility(
         farthest = hits.distance.reshape(size, rays).max(axis=1)
         inside[own] = (backs.mean(axis=1) > INSIDE_SHARE) | (farthest < LEAST_VIEW_M)
         met[own][backs] = -1
+
+    in_chunks(look, count, max(CHUNK_RAYS // rays, 1), workers)
     closed = bool((sky[~inside] < MOST_SKY / 2).any())
     useful = ~inside & ~(closed & (sky > MOST_SKY))
     seen = np.zeros(geometry.triangle_count, dtype=bool)
