@@ -33,7 +33,8 @@ def denoised(
 ) -> Floats:
     """Average over tiles of 4 by 4 texels, twice, as far as the surface continues.
 
-    Where other things are near, light changes quickly: there it is averaged over less.
+    Where other things are near either texel, light changes quickly: there it is averaged over
+    less.
 
     Parameters
     ----------

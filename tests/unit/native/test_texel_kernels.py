@@ -75,7 +75,8 @@ def averaged(sheet: Sheet, k: int) -> NDArray[np.float64]:
         if alike < 0.8 or far2 > 0.04 or off * off > 0.1 * far2 + 1e-8:
             continue
         weight = (4 - abs(down)) * (4 - abs(right)) * alike
-        weight *= math.exp(-2.0 * far2 / max(float(sheet.nearness[k]) ** 2, 1e-6))
+        close = 0.25 * float(min(sheet.nearness[k], sheet.nearness[n]))
+        weight *= math.exp(-far2 / max(close**2, 1e-7))
         weights += weight
         total += weight * sheet.values[n]
     return total / weights
@@ -90,6 +91,18 @@ def test_denoising_averages_over_tiles_as_far_as_the_surface_goes_on(threads: in
     chosen = np.flatnonzero(sheet.valid)
     expected = np.array([averaged(sheet, int(k)) for k in chosen])
     np.testing.assert_allclose(got[chosen], expected, rtol=1e-5)
+
+
+def test_what_lies_in_a_gap_keeps_its_shadow_to_itself() -> None:
+    """A wall that sees the room takes no darkness from its part behind a picture."""
+    sheet = Sheet()
+    sheet.valid[:] = True
+    behind = sheet.columns < 4
+    sheet.owners[:] = 0
+    sheet.nearness[:] = np.where(behind, 0.02, 2.0)
+    sheet.values[:] = np.where(behind, 0.0, 1.0)[:, None]
+    got = denoise_texels(sheet.map, sheet.values, sheet.valid, sheet.nearness, threads=1)
+    np.testing.assert_allclose(got, sheet.values, atol=1e-3)
 
 
 def test_dilation_gives_unknown_texels_the_mean_of_known_neighbours() -> None:

@@ -16,6 +16,10 @@ namespace {
 
 constexpr int64_t BLOCK = 16;  // channels that are averaged at a time
 
+// How far texels share light, as a part of the distance of what they see: what lies in the gap
+// behind a picture keeps its shadow to itself.
+constexpr double NEAR_SHARE = 0.25;
+
 // The texel at a place of the map, -1 for none.
 int64_t texel_at(const TexelMap& map, int64_t row, int64_t column) {
     if (row < 0 || row >= map.height || column < 0 || column >= map.width) return -1;
@@ -53,12 +57,12 @@ bool for_neighbours(const TexelMap& map, int64_t count, const int32_t* unknown,
 }  // namespace
 }  // namespace sailenv
 
-// Averages over tiles of 4 by 4 texels, twice; over less where other things are near. values:
-// (count, channels); valid, inverse_depth: (count,). Result: result, (count, channels), of valid
+// Averages over tiles of 4 by 4 texels, twice; over less where other things are near either texel.
+// values: (count, channels); valid, nearness: (count,). Result: result, (count, channels), of valid
 // texels.
 SAILENV_KERNEL(denoise_texels)
 (int64_t threads, const sailenv::TexelMap* texels, int64_t channels, const float* values,
- const uint8_t* valid, const float* inverse_depth, float* result) {
+ const uint8_t* valid, const float* nearness, float* result) {
     using namespace sailenv;
     const TexelMap& map = *texels;
     if (map.count < 0 || channels < 1) return STATUS_INVALID_ARGUMENT;
@@ -69,8 +73,6 @@ SAILENV_KERNEL(denoise_texels)
             int64_t near[49];
             double weight[49], weights = 0.0;
             int count = 0;
-            const double scale =
-                2.0 / std::max(static_cast<double>(inverse_depth[k] * inverse_depth[k]), 1e-6);
             for (int down = -3; down < 4; down++) {
                 for (int right = -3; right < 4; right++) {
                     const int64_t other = texel_at(map, map.rows[k] + down, map.columns[k] + right);
@@ -86,8 +88,9 @@ SAILENV_KERNEL(denoise_texels)
                     }
                     if (alike < 0.8 || far2 > 0.04 || off * off > 0.1 * far2 + 1e-8) continue;
                     const int tent = (4 - std::abs(down)) * (4 - std::abs(right));
+                    const double close = NEAR_SHARE * std::min(nearness[k], nearness[other]);
                     near[count] = other;
-                    weight[count] = tent * alike * std::exp(-far2 * scale);
+                    weight[count] = tent * alike * std::exp(-far2 / std::max(close * close, 1e-7));
                     weights += weight[count++];
                 }
             }
