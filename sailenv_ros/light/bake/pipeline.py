@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.light.bake.array_coding import rounded
 from sailenv_ros.light.bake.back_to_back import back_to_back_faces
 from sailenv_ros.light.bake.bounces import Patches, patches_of
-from sailenv_ros.light.bake.denoise import denoised, dilated
+from sailenv_ros.light.bake.denoise import denoised
 from sailenv_ros.light.bake.direct import Points
 from sailenv_ros.light.bake.emitters import emitters_of
 from sailenv_ros.light.bake.facing import lit_texels
@@ -38,6 +38,7 @@ from sailenv_ros.light.bake.sky import panes
 from sailenv_ros.light.bake.sky_picture import sky_picture
 from sailenv_ros.light.bake.solving import Samples, SolvedLight, Solver, Stages
 from sailenv_ros.light.bake.sun_edges import sun_edges
+from sailenv_ros.light.bake.texel_light import texel_light
 from sailenv_ros.light.bake.visibility import probe_visibility, visible_triangles
 from sailenv_ros.native.bake_types import SkyWindows
 from sailenv_ros.rays.light_rays import NEVER, RayScene
@@ -251,7 +252,9 @@ class _Bake:
         """
         texels, grid = self._texels, self._grid
         valid = solver.valid if of_texel is None else solver.valid[of_texel]
-        known, columns = self._known(solver, valid, of_texel)
+        known, columns = texel_light(
+            solver, self._geometry, texels, valid, of_texel, self._stages.workers
+        )
         probe_direct, probe_bounced = self._probes(solver, of_texel)
         layers = []
         for place, entry in enumerate(solver.lights):
@@ -289,46 +292,6 @@ class _Bake:
             seen=self._seen(solver, of_texel),
         )
 
-    def _known(
-        self, solver: Solver, valid: NDArray[np.bool_], of_texel: NDArray[np.int32] | None
-    ) -> tuple[Floats, dict[tuple[int, str], int]]:
-        """Return the light of texels, denoised and dilated, and what its columns hold.
-
-        Returns
-        -------
-        known : (texels, K) float32
-            First the bounced light of each light.
-        columns : dict of (int, str) to int
-            Of the light with this number its `direct` and, if it is directional, `visibility`.
-        """
-        channels = solver.bounced.shape[1]
-        given = {
-            (place, name): values
-            for place, entry in enumerate(solver.lights)
-            for name, values in (("direct", entry.direct), ("visibility", entry.visibility))
-            if values is not None
-        }
-        # An area light's shadows are as soft as the texels are fine, and its rays are few.
-        noisy = [
-            key for key in given
-            if of_texel is not None or (key[1] == "direct" and _is_soft(solver.lights[key[0]]))
-        ]  # fmt: skip
-        columns = [*noisy, *(key for key in given if key not in noisy)]
-        known = np.empty((len(solver.bounced), channels + len(columns)), np.float32)
-        known[:, :channels] = solver.bounced
-        for column, key in enumerate(columns, channels):
-            known[:, column] = given[key]
-        nearness = solver.nearness
-        if of_texel is not None:
-            known, nearness = known[of_texel], nearness[of_texel]
-        rough = slice(0, channels + len(noisy))
-        known[:, rough] = denoised(
-            self._geometry, self._texels, np.ascontiguousarray(known[:, rough]), valid, nearness,
-            self._stages.workers,
-        )  # fmt: skip
-        known = dilated(self._geometry, self._texels, known, valid)
-        return known, {key: column for column, key in enumerate(columns, channels)}
-
     def _seen(self, solver: Solver, of_texel: NDArray[np.int32] | None) -> NDArray[np.float16]:
         """Return (K, L, 3): the radiance that eyes see."""
         texels = self._views.level(self._spots, self._visibility.useful)
@@ -352,7 +315,3 @@ class _Bake:
         result: NDArray[Any] = np.zeros((*texels.index.shape, *values.shape[1:]), dtype=kind)
         result[texels.rows, texels.columns] = values
         return rounded(result) if kind is np.float16 else result
-
-
-def _is_soft(entry: SolvedLight) -> bool:
-    return entry.light is not None and entry.light.type == "area"
