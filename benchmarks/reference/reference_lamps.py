@@ -21,6 +21,7 @@ _NUMBERS: dict[str, Any] = {
     "half_width": mi.ScalarVector3f,
     "half_height": mi.ScalarVector3f,
     "area": float,
+    "radius": float,
     "range": float,
     "cos_inner": float,
     "cos_outer": float,
@@ -30,7 +31,7 @@ _NUMBERS: dict[str, Any] = {
 
 
 class Lamp(mi.Emitter):  # type: ignore[misc,name-defined]
-    """One light; see `sailenv_ros.types.lights.Light` for its units."""
+    """One light; see `sailenv_ros.types.lights.Light` for its units. Lamps are small balls."""
 
     def __init__(self, props: Any) -> None:
         mi.Emitter.__init__(self, props)
@@ -55,11 +56,12 @@ class Lamp(mi.Emitter):  # type: ignore[misc,name-defined]
             if self.kind == "area":
                 point += (2.0 * sample.x - 1.0) * mi.Vector3f(self.half_width)
                 point += (2.0 * sample.y - 1.0) * mi.Vector3f(self.half_height)
-            offset = point - it.p
-            distance2 = dr.maximum(dr.squared_norm(offset), 1e-8)
-            distance = dr.sqrt(distance2)
-            away = offset / distance
+            # Of a small ball as much arrives as of its middle, and shadows have soft edges.
+            away, _, distance2 = _way(point - it.p)
             light = self.power * self._pattern(away, distance2) / distance2
+            if self.kind != "area":
+                point += self.radius * mi.warp.square_to_uniform_sphere(sample)
+            away, distance, _ = _way(point - it.p)
         ds = mi.DirectionSample3f()
         ds.p, ds.n, ds.uv, ds.time = point, mi.Normal3f(0.0), mi.Point2f(0.0), it.time
         ds.pdf, ds.delta = mi.Float(1.0), mi.Bool(True)
@@ -100,6 +102,13 @@ class Lamp(mi.Emitter):  # type: ignore[misc,name-defined]
     def to_string(self) -> str:
         """Name it."""
         return f"Lamp[{self.kind}]"
+
+
+def _way(offset: Any) -> tuple[Any, Any, Any]:
+    """Return the direction of an offset, its length [m] and the length squared."""
+    distance2 = dr.maximum(dr.squared_norm(offset), 1e-8)
+    distance = dr.sqrt(distance2)
+    return offset / distance, distance, distance2
 
 
 def register() -> None:

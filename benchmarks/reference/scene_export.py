@@ -20,6 +20,7 @@ from benchmarks.reference.parts import Parts, ply_bytes
 from benchmarks.reference.surfaces import bsdf, emitter
 from sailenv_ros.render.scene.flat_mirrors import material_shown
 from sailenv_ros.types.camera import Camera
+from sailenv_ros.types.light_shapes import LAMP_RADIUS_M
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Material, Mesh
 from sailenv_ros.types.snapshot import WorldSnapshot
@@ -118,6 +119,7 @@ def lamp(light: Light) -> Dict:
     described["position"] = list(light.position_m)
     if light.type == "area":
         return {**described, **_face(light)}
+    described["radius"] = LAMP_RADIUS_M
     described["range"] = max(light.range_m, 1e-3)
     if light.type == "spot":
         described["cos_inner"] = _cosine(light.inner_cone_deg)
@@ -190,6 +192,9 @@ def world_mesh(
     return positions, normals, mesh.uvs * np.array([1.0, -1.0]) + np.array([0.0, 1.0])
 
 
+BACK_M = 2e-4
+"""Distance of the backs of sheets that shine from their fronts [m]."""
+
 Vector3 = tuple[float, float, float]
 _Piece = tuple[Mesh, Floats, tuple[float, float, float]]
 
@@ -228,9 +233,14 @@ def _shape(material: Material, pieces: list[_Piece], parts: Parts) -> Dict:
         for (mesh, *_), first in zip(pieces, firsts, strict=True)
     ]
     positions, normals, uvs = (np.concatenate(arrays) for arrays in zip(*placed, strict=True))
-    content = ply_bytes(positions, normals, uvs, np.concatenate(triangles))
+    corners, glow = np.concatenate(triangles), emitter(material, parts)
+    if glow is not None and material.double_sided:
+        # Mitsuba's faces shine forwards alone: others close behind them shine backwards.
+        corners = np.concatenate([corners, corners[:, ::-1] + len(positions)])
+        positions = np.concatenate([positions, positions - BACK_M * normals])
+        normals, uvs = np.concatenate([normals, -normals]), np.concatenate([uvs, uvs])
+    content = ply_bytes(positions, normals, uvs, corners)
     shape: Dict = {"type": "ply", "filename": parts.mesh(content), "bsdf": bsdf(material, parts)}
-    glow = emitter(material, parts)
     return shape if glow is None else {**shape, "emitter": glow}
 
 

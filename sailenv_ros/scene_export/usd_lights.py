@@ -15,12 +15,10 @@ from sailenv_ros.scene_export.optics import light_pose, looking_back, point_inte
 from sailenv_ros.scene_export.usd_geometry import write_place
 from sailenv_ros.scene_export.usd_text import UsdText, number, quoted, vector
 from sailenv_ros.types.geometry import Pose
+from sailenv_ros.types.light_shapes import LAMP_RADIUS_M
 from sailenv_ros.types.lights import Environment, Light
 
 __all__ = ["write_camera", "write_light", "write_sky"]
-
-LAMP_RADIUS_M = 0.02
-"""Of the ball that a light without extent becomes; its power does not depend on it [m]."""
 
 APERTURE = 0.20955
 """Width of a sensor in tenths of a metre, UsdGeomCamera's own default in millimetres."""
