@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
-__all__ = ["emitters_of"]
+__all__ = ["MOST_EMITTERS", "emitters_of"]
 
 Floats = NDArray[np.float32]
 

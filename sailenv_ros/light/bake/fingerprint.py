@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import asdict
 
 from sailenv_ros.light.bake.settings import BAKE_VERSION, BakeSettings
+from sailenv_ros.rays.mirror_faces import CATEGORY as MIRROR
 from sailenv_ros.types.digests import add_array, model_digest
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.snapshot import WorldSnapshot
@@ -28,6 +29,7 @@ def fingerprint(snapshot: WorldSnapshot, settings: BakeSettings | None = None) -
     for drawn, pose in zip(contents.instances, snapshot.world_from_body, strict=True):
         if drawn.is_baked:
             _add(digest, [drawn.instance.id, list(drawn.scale), list(drawn.lit_by)])
+            _add(digest, [drawn.instance.category == MIRROR])
             add_array(digest, pose)
             digest.update(model_digest(drawn.model))
     return digest.hexdigest()

@@ -29,7 +29,7 @@ from sailenv_ros.native.surface_light import add_radiance_met, mean_radiance_met
 from sailenv_ros.rays.light_rays import NEVER, RayScene
 from sailenv_ros.rays.ray_patterns import low_discrepancy_points
 
-__all__ = ["BACK", "NOTHING", "Looks", "Seen", "Surroundings", "seen_from"]
+__all__ = ["BACK", "NOTHING", "Looks", "Met", "Seen", "Surroundings", "seen_from"]
 
 Floats = NDArray[np.float32]
 
@@ -39,8 +39,30 @@ NOTHING = -1
 BACK = -2
 """Stands for the back of a surface that has none: such light is lost."""
 
+LIFT_M = 1e-3
+"""Distance before a mirror from which it is looked on [m]."""
+
 EMITTER_RAYS = 4
 """Rays from each point to each emitter; texels of a tile of 4 by 4 use different ones."""
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Met:
+    """What rays met.
+
+    Attributes
+    ----------
+    texels : (R,) int32
+        The texel, `NOTHING` or `BACK`; that which a mirror shows, where one was met first.
+    distance : (R,) float32
+        Of what was met first, such as the mirror [m].
+    share : (R,) float32 or None
+        Share of the light that mirrors let arrive; None if there is no mirror.
+    """
+
+    texels: NDArray[np.int32]
+    distance: Floats
+    share: Floats | None
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -62,6 +84,8 @@ class Surroundings:
     panes : (P, 4, 3) float32
     emitters : (E, 4) float32
         Small things that shine; see `emitters_of`.
+    mirrors : (T,) float32
+        Share of the light that triangles mirror; empty if there is no mirror.
     """
 
     scene: RayScene
@@ -73,6 +97,34 @@ class Surroundings:
     sky: Floats
     panes: Floats
     emitters: Floats = field(default_factory=lambda: np.zeros((0, 4), np.float32))
+    mirrors: Floats = field(default_factory=lambda: np.zeros(0, np.float32))
+
+    def met(self, origins: Floats, directions: Floats) -> Met:
+        """Find what rays meet, by way of one mirror if there is one on it.
+
+        Parameters
+        ----------
+        origins, directions : (R, 3) float32
+            Directions of unit length.
+        """
+        hits = self.scene.hits(origins, directions)
+        texels, share = self.texels_hit(hits, directions), None
+        if len(self.mirrors):
+            share = np.ones(len(texels), np.float32)
+            triangle = np.maximum(hits.triangle, 0)
+            ahead = np.einsum("rx,rx->r", directions, self.faces[triangle])
+            mirrored = (hits.triangle >= 0) & (self.mirrors[triangle] > 0.0) & (ahead < 0.0)
+            at = np.flatnonzero(mirrored)
+            normals = self.faces[triangle[at]]
+            points = origins[at] + directions[at] * hits.distance[at, None]
+            onwards = directions[at] - 2.0 * ahead[at, None] * normals
+            beyond = self.scene.hits(points + np.float32(LIFT_M) * normals, onwards)
+            found = self.texels_hit(beyond, onwards)
+            known = found >= 0
+            # A mirror that shows the sky, or the inside of something, is as any other surface.
+            texels[at[known]] = found[known]
+            share[at[known]] = self.mirrors[triangle[at[known]]]
+        return Met(texels=texels, distance=hits.distance, share=share)
 
     def transmittance(
         self, texels: NDArray[np.int32], origins: Floats, directions: Floats
@@ -164,8 +216,8 @@ def seen_from(
     windows = SkyWindows(around.sky, around.panes)
     origins, directions = hemisphere_rays(lit, pattern)
     flat, begins = directions.reshape(-1, 3), origins.reshape(-1, 3)
-    hits = around.scene.hits(begins, flat)
-    texels = around.texels_hit(hits, flat)
+    met = around.met(begins, flat)
+    texels = met.texels
     clear = around.transmittance(texels, begins, flat).reshape(count, rays)
     texels = texels.reshape(count, rays)
     shots = len(window_pattern)
@@ -176,21 +228,31 @@ def seen_from(
         share = around.scene.share_that_passes(begins, towards, never)
         seen = point, towards, share
         sky_by_choice(lit, windows, seen, shots=shots, others=rays, light=sky)
-    near = np.reciprocal(np.maximum(hits.distance.reshape(count, rays), np.float32(1e-3)))
-    looks = _looks(around, lit, directions, texels)
+    near = np.reciprocal(np.maximum(met.distance.reshape(count, rays), np.float32(1e-3)))
+    looks = _looks(around, lit, directions, texels, met.share)
     return Seen(texels=texels, sky=sky, closeness=near.mean(axis=1), looks=looks)
 
 
 def _looks(
-    around: Surroundings, points: LitPoints, directions: Floats, texels: NDArray[np.int32]
+    around: Surroundings,
+    points: LitPoints,
+    directions: Floats,
+    texels: NDArray[np.int32],
+    share: Floats | None,
 ) -> Looks:
-    """Look at the emitters, and find which rays in all directions lie in their cones."""
-    none = np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.float32)
-    if not len(around.emitters):
-        return Looks(point=none[0], texel=none[1], weight=none[2])
+    """Look at the emitters, and find which rays in all directions lie in their cones.
+
+    What mirrors swallow is taken off.
+    """
     emitters, pattern = Emitters(around.emitters), low_discrepancy_points(EMITTER_RAYS)
-    shots = len(pattern)
-    found = [weights_within_cones(points, emitters, directions, texels, shots=shots)]
+    shots, rays = len(pattern), texels.shape[1]
+    found = [(np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.float32))]
+    if share is not None:
+        dimmed = np.flatnonzero(share < 1.0)
+        lost = (share[dimmed] - 1.0) / np.float32(rays)
+        found.append(((dimmed // rays).astype(np.int32), texels.ravel()[dimmed], lost))
+    if len(around.emitters):
+        found.append(weights_within_cones(points, emitters, directions, texels, shots=shots))
     # Of a net of 2 by 2, steps of a quarter would lean to one side of its cells.
     moved = LitPoints(
         points.arrays["positions"], points.arrays["normals"], points.arrays["faces"],
@@ -198,10 +260,11 @@ def _looks(
     )  # fmt: skip
     for emitter in around.emitters:
         point, begins, towards = emitter_rays(moved, emitter, pattern)
-        met = around.texels_hit(around.scene.hits(begins, towards), towards)
-        weight = emitter_weights(
-            points, emitters, point, towards, shots=shots, others=texels.shape[1]
-        )
-        found.append((point[met >= 0], met[met >= 0], weight[met >= 0]))
+        met = around.met(begins, towards)
+        weight = emitter_weights(points, emitters, point, towards, shots=shots, others=rays)
+        if met.share is not None:
+            weight = weight * met.share
+        known = met.texels >= 0
+        found.append((point[known], met.texels[known], weight[known]))
     point, texel, weight = (np.concatenate(arrays) for arrays in zip(*found, strict=True))
     return Looks(point=point, texel=texel, weight=weight)

@@ -93,7 +93,7 @@ class ProbeViews:
         count, rays = end - first, len(self.directions)
         origins = np.repeat(positions[first:end], rays, axis=0)
         directions = np.tile(self.directions, (count, 1))
-        texels = around.texels_hit(around.scene.hits(origins, directions), directions)
+        texels = around.met(origins, directions).texels
         self.texels[first:end] = texels.reshape(count, rays)
         clear = around.transmittance(texels, origins, directions)
         self.clear[first:end] = clear.reshape(count, rays)

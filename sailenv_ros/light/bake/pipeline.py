@@ -31,6 +31,7 @@ from sailenv_ros.light.bake.light_probes import (
     probe_positions,
     straight_light,
 )
+from sailenv_ros.light.bake.mirrors import mirror_shares, with_images
 from sailenv_ros.light.bake.reflectance import albedo_of, emission_of
 from sailenv_ros.light.bake.sampling import tile_shift
 from sailenv_ros.light.bake.settings import BakeSettings, drafted
@@ -140,9 +141,10 @@ class _Bake:
         texels = lit_texels(geometry, scene, layout, stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
         emission = emission_of(geometry, layout, texels)
-        glows = glows_of(
-            geometry, texels.triangle, {d.instance.id: d.lit_by for d in contents.instances}
-        )
+        drawn = contents.instances
+        glows = glows_of(geometry, texels.triangle, {d.instance.id: d.lit_by for d in drawn})
+        mirrors = mirror_shares(geometry, {d.instance.id: d.instance.category for d in drawn})
+        emitters = emitters_of(geometry, texels, (emission, *glows.values()))
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,
@@ -152,7 +154,8 @@ class _Bake:
             index=texels.index,
             sky=sky_picture(contents.environment),
             panes=panes(geometry),
-            emitters=emitters_of(geometry, texels, (emission, *glows.values())),
+            emitters=with_images(emitters, geometry, mirrors),
+            mirrors=mirrors if mirrors.any() else mirrors[:0],
         )
         points = Points(
             positions=texels.positions,

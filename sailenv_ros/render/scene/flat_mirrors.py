@@ -7,13 +7,13 @@ Knows no graphics library.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.rays.mirror_faces import CATEGORY, MirrorFace, mirror_face, mirror_faces
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import BODY_FROM_OPTICAL, Pose
 from sailenv_ros.types.model import Material, Model, ModelPart
@@ -30,18 +30,6 @@ MOST = 2
 LEAST_PX = 64
 """A mirror whose rectangle covers less of the picture is skipped."""
 
-FLAT = 0.05
-"""A mirror is thinner than this share of its shorter side."""
-
-LEAST_SIDE_M = 0.1
-LEAST_METALLIC, MOST_ROUGHNESS = 0.9, 0.1
-CATEGORY = "mirror"
-"""Category of objects in which any flat metal is a mirror, whatever its roughness."""
-
-SILVERED = 0.9
-"""Least reflectance of such a mirror in its brightest channel, as of silver behind glass: models
-give their mirrors the grey of what they happen to reflect."""
-
 NEAR_PLANE_M = 4e-3
 """Pixels this near to the mirror's plane belong to it; its frame stands out further."""
 
@@ -50,16 +38,6 @@ PARALLEL_EYE_M = 1e6
 
 BEHIND_M = 0.02
 """Objects that reach less far before the plane are not mirrored: walls, and the mirror."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class _Face:
-    """A flat part of a model, in its frame before scaling."""
-
-    axis: int
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
-    tint: NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -97,9 +75,9 @@ class FlatMirrors:
 
     def __init__(self) -> None:
         self._contents: SceneContents | None = None
-        self._faces: list[tuple[int, int, _Face]] = []
+        self._faces: list[tuple[int, int, MirrorFace]] = []
         self._corners = np.zeros((0, 8, 3))
-        self._of_model: dict[int, tuple[Model, tuple[tuple[_Face, bool], ...]]] = {}
+        self._of_model: dict[tuple[int, str], tuple[Model, tuple[MirrorFace, ...]]] = {}
 
     def show(self, contents: SceneContents) -> None:
         """Find the mirrors of a scene."""
@@ -111,24 +89,18 @@ class FlatMirrors:
         models = {}
         self._faces = []
         for row, drawn in enumerate(contents.instances):
-            key = id(drawn.model)
+            category = drawn.instance.category
+            key = id(drawn.model), category
             known = self._of_model.get(key)
-            found = models[key] = known or (drawn.model, tuple(_faces(drawn.model)))
-            named = drawn.instance.category == CATEGORY
+            found = models[key] = known or (drawn.model, mirror_faces(drawn.model, category))
             scale = np.asarray(drawn.scale)
             self._faces += [
                 (
                     row,
                     drawn.instance.id,
-                    replace(
-                        f,
-                        low=f.low * scale,
-                        high=f.high * scale,
-                        tint=_silvered(f.tint) if named else f.tint,
-                    ),
+                    replace(face, low=face.low * scale, high=face.high * scale),
                 )
-                for f, polished in found[1]
-                if polished or named
+                for face in found[1]
             ]
         self._of_model = models
         if self._faces:
@@ -149,7 +121,7 @@ class FlatMirrors:
         return [mirror for _, mirror in found[:MOST]]
 
     def _seen(
-        self, snapshot: WorldSnapshot, camera: Camera, row: int, instance_id: int, face: _Face
+        self, snapshot: WorldSnapshot, camera: Camera, row: int, instance_id: int, face: MirrorFace
     ) -> SeenMirror | None:
         pose = snapshot.world_from_body[row]
         eye = camera.world_from_camera[:3, 3]
@@ -180,45 +152,18 @@ class FlatMirrors:
         )
 
 
-def _faces(model: Model) -> Iterator[tuple[_Face, bool]]:
-    """Find flat metal; True where it is polished."""
-    for part in model.parts:
-        face = _face(part)
-        if face is not None:
-            yield face, part.material.roughness <= MOST_ROUGHNESS
-
-
-def _face(part: ModelPart) -> _Face | None:
-    look, points = part.material, part.mesh.positions
-    rough = look.metallic_roughness_texture is not None or look.normal_texture is not None
-    if look.alpha != "opaque" or look.metallic < LEAST_METALLIC or rough or not len(points):
-        return None
-    low, high = points.min(axis=0).astype(np.float64), points.max(axis=0).astype(np.float64)
-    size = high - low
-    thin, short, _ = np.argsort(size, kind="stable")
-    if size[short] < LEAST_SIDE_M or size[thin] > FLAT * size[short]:
-        return None
-    at = points[:, thin]
-    if not ((at - low[thin] < 1e-3) | (high[thin] - at < 1e-3)).all():
-        return None
-    return _Face(int(thin), low, high, np.asarray(look.base_colour[:3], np.float32))
-
-
 def material_shown(part: ModelPart, category: str) -> Material:
     """Return a part's material, silvered if it is the flat metal of a mirror."""
-    face = _face(part) if category == CATEGORY else None
+    face = mirror_face(0, part, category) if category == CATEGORY else None
     if face is None:
         return part.material
-    red, green, blue = (float(channel) for channel in _silvered(face.tint))
+    red, green, blue = (float(channel) for channel in face.tint)
     return replace(part.material, base_colour=(red, green, blue, 1.0), roughness=0.0)
 
 
-def _silvered(tint: NDArray[np.float32]) -> NDArray[np.float32]:
-    brightest = float(tint.max())
-    return tint * np.float32(max(SILVERED / brightest, 1.0)) if brightest > 0.0 else tint
-
-
-def _window(camera: Camera, pose: NDArray[np.float64], face: _Face, front: float) -> Window | None:
+def _window(
+    camera: Camera, pose: NDArray[np.float64], face: MirrorFace, front: float
+) -> Window | None:
     """Return the part of the picture that may show a face; None if it shows too little of it.
 
     Through a lens that bends straight lines all of it.

@@ -63,3 +63,26 @@ def test_looking_at_emitters_neither_adds_nor_takes_light() -> None:
         _, bounced = read(baked, instance, snapshot, baked.layers[0].bounced)
         np.testing.assert_allclose(bounced, 2.0, rtol=0.04)
         np.testing.assert_allclose(bounced.mean(), 2.0, rtol=0.01)
+
+
+def test_a_mirror_lights_walls_by_the_image_of_what_shines() -> None:
+    """A wall opposite gets what a second cube behind the mirror would give, times its tint."""
+    black, middle = (
+        {"base_colour": (0.0, 0.0, 0.0, 1.0), "metallic": 1.0},
+        np.array([0.1, -0.2, 0.3]),
+    )
+    cube = model_of(box_mesh(SIDE_M), **black, emission=(RADIANCE,) * 3)
+    silver = {"base_colour": (0.8, 0.8, 0.8, 1.0), "metallic": 1.0, "roughness": 0.02}
+    mirror = Thing(model_of(box_mesh((0.02, 2.98, 2.98)), **silver), Pose((-1.48, 0.0, 0.0)))
+    things = [Thing(hollow(3.0, **black)), Thing(cube, Pose(tuple(middle))), mirror]
+    snapshot = still(things, lights=())
+    baked = bake(snapshot, settings=replace(COARSE, texel_m=0.05))
+    points, bounced = read(baked, 1, snapshot, baked.layers[0].bounced, steps=12)
+    chosen = (points[:, 0] > 1.45) & (np.abs(points[:, 1:]).max(axis=1) < 1.3)
+    points, normals = points[chosen], np.tile((-1.0, 0.0, 0.0), (chosen.sum(), 1))
+    image = middle * (-1.0, 1.0, 1.0) - (2.0 * 1.47, 0.0, 0.0)
+    straight, mirrored = (cube_light(points, normals, place) for place in (middle, image))
+    assert (0.8 * mirrored / straight).max() > 0.1
+    error = bounced[chosen][:, 0] / (straight + 0.8 * mirrored) - 1.0
+    assert error.mean() == pytest.approx(0.0, abs=0.02)
+    assert error.std() < 0.06
