@@ -27,6 +27,9 @@ constexpr float LEAST_SHARE = 0.45f, WHOLE_SHARE = 0.6f;
 // What is seen by a cosine of more than STEEP mirrors less than LEAST_SHARE if it sends back more
 // than BRIGHT otherwise.
 constexpr float BRIGHT = 0.12f, STEEP = 0.45f;
+// Distances between a lobe's middle and an area light, in widths of the lobe: up to where rays tell
+// the highlight alone, and from where on there is none.
+constexpr float LAMP_NEAR = 2.0f, LAMP_FAR = 4.0f;
 // What is nearer than NEAR_M stands near, and what is farther than FAR_M does not.
 constexpr float NEAR_M = 0.1f, FAR_M = 0.3f;
 // Roughness of the pictures of the room that rays see where they meet nothing.
@@ -46,22 +49,47 @@ constexpr float REACH = 12.0f, TURNED = 0.9f, OFF_PLANE = 0.02f, OTHER_WEIGHT = 
 // The pixel of a square whose point looks: in each row of squares another column, and so on.
 constexpr int32_t PLACES[SQUARE] = {0, 4, 2, 6, 1, 5, 3, 7};
 
-// By how much rays tell what eight surfaces mirror.
-f8 traced_share(const Chunk& c, int32_t i) {
-    const f8 roughness = load(c.roughness + i);
-    const i8 rough = (roughness >= ROUGH) & (roughness < ROUGHEST) & ~load(c.empty + i);
-    if (!any(rough)) return splat(0.0f);
+// By how much eight surfaces mirror enough for rays to be worth it.
+f8 share_of_room(const Chunk& c, int32_t i, i8 rough) {
     const Vec3x8 ray = c.ray.at(i);
     const f8 diffuse = luminance(c.base.at(i)) * (1.0f - load(c.metallic + i));
     const f8 along = dot(c.normal.at(i), ray);
     const i8 steep = along * along > dot(ray, ray) * (STEEP * STEEP);
     if (!any(rough & ~(steep & (diffuse > BRIGHT)))) return splat(0.0f);
     const f8 mirrored = mirrored_part(c, i);
-    const f8 share = smoothstep(LEAST_SHARE, WHOLE_SHARE, mirrored) *
-                     (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness));
-    return rough & ~leads_everywhere(c, i, mirrored) ? share : splat(0.0f);
+    const f8 share = smoothstep(LEAST_SHARE, WHOLE_SHARE, mirrored);
+    return leads_everywhere(c, i, mirrored) ? splat(0.0f) : share;
 }
 
+// By how much lobes of eight surfaces meet the faces of area lights, which outshine all else.
+f8 share_of_lamps(const Light& light, const Chunk& c, int32_t i) {
+    f8 share = splat(0.0f);
+    const Vec3x8 ray = mirrored_ray(c, i), at = c.point.at(i);
+    const f8 roughness = load(c.roughness + i);
+    for (int64_t k = 0; k < light.mirrored_light_count; k++) {
+        const RayLight& l = light.mirrored_lights[k];
+        if (l.lamp.kind != LIGHT_AREA) continue;
+        const vec3 across(l.across[0], l.across[1], l.across[2]), up(l.up[0], l.up[1], l.up[2]);
+        const float radius = 0.5f * std::sqrt(dot(across, across) + dot(up, up));
+        const Vec3x8 to = splat(l.lamp.position) - at;
+        const f8 along = dot(to, ray), beside2 = max8(dot(to, to) - along * along, splat(0.0f));
+        const f8 off = max8(sqrt8(beside2) - radius, splat(0.0f));
+        const i8 ahead = (along > 0.0f) & (dot(to, splat(l.lamp.direction)) < 0.0f);
+        const f8 lobe = roughness * roughness * max8(along, splat(0.01f));
+        const f8 met = 1.0f - smoothstep(LAMP_NEAR, LAMP_FAR, off / lobe);
+        share = max8(share, ahead ? met : splat(0.0f));
+    }
+    return share;
+}
+
+// By how much rays tell what eight surfaces mirror.
+f8 traced_share(const Light& light, const Chunk& c, int32_t i) {
+    const f8 roughness = load(c.roughness + i);
+    const i8 rough = (roughness >= ROUGH) & (roughness < ROUGHEST) & ~load(c.empty + i);
+    if (!any(rough)) return splat(0.0f);
+    const f8 share = max8(share_of_room(c, i, rough), share_of_lamps(light, c, i));
+    return rough ? share * (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness)) : splat(0.0f);
+}
 // Whether a triangle's part may be rough.
 bool may_be_rough(const Shading& s, const Triangle& t) {
     const Part& part = s.parts->parts[t.part];
@@ -263,7 +291,7 @@ void find_samples(const Shading& s, int32_t row, int32_t first_row, int32_t end_
         c.padded = (c.count + 7) & ~7;
         gather_points(s, points, c);
         for (int32_t i = 0; i < c.padded; i += 8) {
-            const f8 share = traced_share(c, i);
+            const f8 share = traced_share(*s.light, c, i);
             for (int32_t k = i; k < std::min(i + 8, c.count); k++) {
                 if (!(share[k - i] > 0.0f)) continue;
                 RoughSample& own = *of[k] = RoughSample{};
@@ -381,7 +409,7 @@ void sample_rough(int64_t threads, const Shading& s, int32_t first_row, int32_t 
 void mirror_rough(const Shading& s, const int32_t* x, const int32_t* y, Chunk& c) {
     const RoughSamples& samples = *s.rough;
     for (int32_t i = 0; i < c.padded; i += 8) {
-        const f8 share = traced_share(c, i);
+        const f8 share = traced_share(*s.light, c, i);
         const i8 wanted = share > 0.0f;
         if (!any(wanted)) continue;
         const i8 px = load(x + i), py = load(y + i);
