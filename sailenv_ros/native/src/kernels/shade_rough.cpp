@@ -21,6 +21,9 @@ constexpr float LEAST_RISE = 0.02f;       // rays that rise less from a surface 
 // Roughness up to where rays tell all that is mirrored, and from where on nothing: there it is the
 // light around.
 constexpr float ROUGHER = 0.6f, ROUGHEST = 0.75f;
+// Roughness from where on samples tell of area lights, and from where on they do alone; and the
+// share that is mirrored from where on what is smoother than ROUGH has other rays.
+constexpr float SMOOTHEST = 0.2f, SMOOTHER = 0.3f, SMOOTH_SHARE = 0.25f;
 // Share that is mirrored of all light that is sent back: from where on rays are worth it, and count
 // alone.
 constexpr float LEAST_SHARE = 0.45f, WHOLE_SHARE = 0.6f;
@@ -85,15 +88,26 @@ f8 share_of_lamps(const Light& light, const Chunk& c, int32_t i) {
 // By how much rays tell what eight surfaces mirror.
 f8 traced_share(const Light& light, const Chunk& c, int32_t i) {
     const f8 roughness = load(c.roughness + i);
-    const i8 rough = (roughness >= ROUGH) & (roughness < ROUGHEST) & ~load(c.empty + i);
+    const i8 rough = (roughness >= SMOOTHEST) & (roughness < ROUGHEST) & ~load(c.empty + i);
     if (!any(rough)) return splat(0.0f);
-    const f8 share = max8(share_of_room(c, i, rough), share_of_lamps(light, c, i));
-    return rough ? share * (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness)) : splat(0.0f);
+    const i8 very = rough & (roughness >= ROUGH);
+    const f8 lamps = rough ? share_of_lamps(light, c, i) : splat(0.0f);
+    f8 share = any(very) ? share_of_room(c, i, very) : splat(0.0f);
+    share = very ? share : splat(0.0f);
+    if (any(lamps > share)) {
+        // What is smoother and mirrors much has rays of its own.
+        const f8 own = smoothstep(SMOOTH_SHARE, LEAST_SHARE, mirrored_part(c, i));
+        const f8 smooth =
+            very ? splat(1.0f) : smoothstep(SMOOTHEST, SMOOTHER, roughness) * (1.0f - own);
+        share = max8(share, lamps * smooth);
+    }
+    return share * (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness));
 }
+
 // Whether a triangle's part may be rough.
 bool may_be_rough(const Shading& s, const Triangle& t) {
     const Part& part = s.parts->parts[t.part];
-    return part.detail_map != nullptr || (part.roughness >= ROUGH && part.roughness < ROUGHEST);
+    return part.detail_map != nullptr || (part.roughness >= SMOOTHEST && part.roughness < ROUGHEST);
 }
 
 // The normal of a triangle's plane in the frame of the camera or of a face of the lens, with either
