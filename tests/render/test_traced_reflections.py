@@ -163,6 +163,25 @@ def test_rough_metal_mirrors_the_face_of_an_area_light(native: NativeRenderer) -
     assert mean_at(picture(native, ROUGH_METAL, card, width=960, lights=(light,)), 0.2) < 0.01
 
 
+@pytest.mark.parametrize("roughness", [0.32, 0.4])
+def test_a_board_mirrors_the_face_of_an_area_light(
+    native: NativeRenderer, roughness: float
+) -> None:
+    """Four hundredths of what metal does, at its own place and no other."""
+    board = model_of(
+        box_mesh((1.0, 2.0, 2.0)), base_colour=(0.5, 0.5, 0.5, 1.0), roughness=roughness
+    )
+    light = Light(
+        name="panel", type="area", position_m=(2.4, 0.5, 0.0), direction=(1.0, 0.0, 0.0),
+        width_m=0.5, height_m=0.5, intensity=10.0,
+    )  # fmt: skip
+    rgb = picture(native, Thing(board, Pose((3.5, 0.0, 0.0))), width=960, lights=(light,))
+    low, high = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
+    expected = 0.04 * 10.0 * lobe_share(low, high, 0.25, roughness)
+    assert mean_at(rgb, 0.25) == pytest.approx(expected, rel=0.2)
+    assert mean_at(rgb, -0.6) < 0.1 * expected
+
+
 def test_a_lamp_has_a_highlight_on_rough_metal(native: NativeRenderer) -> None:
     """Of a point light: distribution, masking and tint at a point that sees it, and shadow."""
     lamp = Light(name="bulb", type="point", position_m=(2.0, 0.6, 0.0), intensity=0.1)
@@ -187,13 +206,15 @@ def mean_at(rgb: NDArray[np.uint8], y: float) -> float:
     return float(linear(rgb)[row - 16 : row + 16, column - 2 : column + 3, 0].mean())
 
 
-def lobe_share(low: NDArray[np.float64], high: NDArray[np.float64], y: float) -> float:
+def lobe_share(
+    low: NDArray[np.float64], high: NDArray[np.float64], y: float, roughness: float = ROUGH
+) -> float:
     """Share of what a point of the rough metal sends to the origin that comes from a box.
 
     Walter et al. 2007, "Microfacet models for refraction through rough surfaces": D, G and (41).
     """
     random = np.random.default_rng(3)
-    point, a2 = np.array((3.0, y, 0.0)), ROUGH**4
+    point, a2 = np.array((3.0, y, 0.0)), roughness**4
     u, turn = random.random(200_000), 2.0 * np.pi * random.random(200_000)
     cosine = np.sqrt((1.0 - u) / (1.0 + (a2 - 1.0) * u))
     sine = np.sqrt(1.0 - cosine**2)

@@ -24,6 +24,8 @@ constexpr float ROUGHER = 0.6f, ROUGHEST = 0.75f;
 // Roughness from where on samples tell of area lights, and from where on they do alone; and the
 // share that is mirrored from where on what is smoother than ROUGH has other rays.
 constexpr float SMOOTHEST = 0.2f, SMOOTHER = 0.3f, SMOOTH_SHARE = 0.25f;
+// Roughness up to where and from where on highlights of area lights are too wide to be worth it.
+constexpr float DULL = 0.45f, DULLER = 0.55f;
 // Share that is mirrored of all light that is sent back: from where on rays are worth it, and count
 // alone.
 constexpr float LEAST_SHARE = 0.45f, WHOLE_SHARE = 0.6f;
@@ -32,7 +34,7 @@ constexpr float LEAST_SHARE = 0.45f, WHOLE_SHARE = 0.6f;
 constexpr float BRIGHT = 0.12f, STEEP = 0.45f;
 // Distances between a lobe's middle and an area light, in widths of the lobe: up to where rays tell
 // the highlight alone, and from where on there is none.
-constexpr float LAMP_NEAR = 2.0f, LAMP_FAR = 4.0f;
+constexpr float LAMP_NEAR = 1.5f, LAMP_FAR = 3.0f;
 // What is nearer than NEAR_M stands near, and what is farther than FAR_M does not.
 constexpr float NEAR_M = 0.1f, FAR_M = 0.3f;
 // Roughness of the pictures of the room that rays see where they meet nothing.
@@ -44,6 +46,8 @@ constexpr float FAR_REACH_M = 0.1f;
 // Samples enough to share; with fewer around it, a sample has up to so many times as many rays.
 constexpr float ENOUGH = 8.0f;
 constexpr int32_t MOST_TIMES = 4;
+// The picture of the room without lamps, as reflection_points.py has it.
+constexpr int32_t LAMPLESS = 0;
 // Pixels take over what samples mirror that lie nearer [pixels]. Samples with normals turned by
 // more than this cosine, and those that lie off the pixel's plane by more than this share of its
 // depth, count so little that they do only where there are no others.
@@ -61,7 +65,7 @@ f8 share_of_room(const Chunk& c, int32_t i, i8 rough) {
     if (!any(rough & ~(steep & (diffuse > BRIGHT)))) return splat(0.0f);
     const f8 mirrored = mirrored_part(c, i);
     const f8 share = smoothstep(LEAST_SHARE, WHOLE_SHARE, mirrored);
-    return leads_everywhere(c, i, mirrored) ? splat(0.0f) : share;
+    return rough & ~leads_everywhere(c, i, mirrored) ? share : splat(0.0f);
 }
 
 // By how much lobes of eight surfaces meet the faces of area lights, which outshine all else.
@@ -91,17 +95,16 @@ f8 traced_share(const Light& light, const Chunk& c, int32_t i) {
     const i8 rough = (roughness >= SMOOTHEST) & (roughness < ROUGHEST) & ~load(c.empty + i);
     if (!any(rough)) return splat(0.0f);
     const i8 very = rough & (roughness >= ROUGH);
-    const f8 lamps = rough ? share_of_lamps(light, c, i) : splat(0.0f);
     f8 share = any(very) ? share_of_room(c, i, very) : splat(0.0f);
-    share = very ? share : splat(0.0f);
-    if (any(lamps > share)) {
-        // What is smoother and mirrors much has rays of its own.
-        const f8 own = smoothstep(SMOOTH_SHARE, LEAST_SHARE, mirrored_part(c, i));
-        const f8 smooth =
-            very ? splat(1.0f) : smoothstep(SMOOTHEST, SMOOTHER, roughness) * (1.0f - own);
-        share = max8(share, lamps * smooth);
-    }
-    return share * (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness));
+    share = share * (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness));
+    if (!any(rough & (roughness < DULLER) & (share < 1.0f))) return share;
+    f8 lamps = share_of_lamps(light, c, i) * (1.0f - smoothstep(DULL, DULLER, roughness));
+    lamps = rough ? lamps : splat(0.0f);
+    if (!any(lamps > share)) return share;
+    // What is smoother and mirrors much has rays of its own.
+    const f8 own = smoothstep(SMOOTH_SHARE, LEAST_SHARE, mirrored_part(c, i));
+    const f8 few = smoothstep(SMOOTHEST, SMOOTHER, roughness) * (1.0f - own);
+    return max8(share, lamps * (very ? splat(1.0f) : few));
 }
 
 // Whether a triangle's part may be rough.
@@ -159,10 +162,12 @@ int32_t points_of(const Shading& s, int32_t column, int32_t row, int32_t first_r
 
 // A ray of a sample's lobe, and what it met.
 struct LobeRay {
-    int32_t point, hit;  // `hit` is among the places that are shaded; -1 for none
+    int32_t point, hit;  // `hit` is among the places that are shaded; else NO_HIT or UNKNOWN
     float weight, near;  // `near` is the share of what is met that stands near
     vec3 ray, lamps;     // `lamps` is radiance of faces of lamps on its way
 };
+
+constexpr int32_t NO_HIT = -1, UNKNOWN = -2;
 
 // Radiance of the faces of area lights that a ray passes before `end`.
 vec3 radiance_of_lamps(const Light& light, vec3 from, vec3 ray, float end) {
@@ -199,10 +204,15 @@ int32_t follow_rays(const Shading& s, const Chunk& c, RoughSample* const* sample
                                   c.roughness[i] * c.roughness[i], 1.0f);
         if (dot(ray, vector_at(c.normal, i)) < LEAST_RISE) continue;
         const vec3 begin = vector_at(c.point, i);
-        const SceneHit met = closest_hit(*s.light->traced, begin, ray, ENDLESS);
         LobeRay& one = rays[count++];
-        one = {i,    -1,  lobe_weight(c, i, ray),
-               0.0f, ray, radiance_of_lamps(*s.light, begin, ray, met.hit.t)};
+        one = {i,    UNKNOWN, lobe_weight(c, i, ray),
+               0.0f, ray,     radiance_of_lamps(*s.light, begin, ray, ENDLESS)};
+        const bool lit = dot(one.lamps, one.lamps) > 0.0f;
+        if (!samples[i]->of_room && !lit) continue;
+        const SceneHit met = closest_hit(*s.light->traced, begin, ray, ENDLESS);
+        if (lit) one.lamps = radiance_of_lamps(*s.light, begin, ray, met.hit.t);
+        if (!samples[i]->of_room) continue;
+        one.hit = NO_HIT;
         if (!is_drawn(met)) continue;
         one.near = 1.0f - smoothstep(NEAR_M, FAR_M, met.hit.t);
         const vec3 along = vector_at(c.ray, i);
@@ -217,13 +227,12 @@ int32_t follow_rays(const Shading& s, const Chunk& c, RoughSample* const* sample
 // What pictures of the room without lamps have where rays lead that meet nothing.
 void see_pictures(const Light& light, const Chunk& c, const LobeRay* rays, int32_t count,
                   Vectors& seen) {
-    constexpr int32_t LAMPLESS = 0;  // as reflection_points.py has it
     for (int32_t first = 0; first < count; first += 8) {
         Vec3x8 from{}, along{};
         bool missed = false;
         for (int32_t k = 0; k < 8; k++) {
             const LobeRay& one = rays[std::min(first + k, count - 1)];
-            missed |= one.hit < 0;
+            missed |= one.hit == NO_HIT;
             from.x[k] = c.point.x[one.point], along.x[k] = one.ray.x;
             from.y[k] = c.point.y[one.point], along.y[k] = one.ray.y;
             from.z[k] = c.point.z[one.point], along.z[k] = one.ray.z;
@@ -247,13 +256,27 @@ void look(const Shading& s, const Chunk& c, RoughSample* const* samples,
         for (int32_t k = 0; k < count; k++) {
             const LobeRay& one = rays[k];
             RoughSample& own = *samples[one.point];
-            const vec3 met =
-                one.lamps + (one.hit < 0 ? vector_at(pictures, k) : vector_at(hits.light, one.hit));
+            vec3 met = one.lamps;
+            if (one.hit == NO_HIT) met = met + vector_at(pictures, k);
+            if (one.hit >= 0) met = met + vector_at(hits.light, one.hit);
             const float near = one.weight * one.near, open = one.weight - near;
             own.near = own.near + met * near;
             own.far = own.far + met * open;
             own.weight += one.weight;
             own.open += open;
+        }
+    }
+}
+
+// Gives points whose rays look for area lights alone what pictures of the room have beside.
+void see_room(const Light& light, const Chunk& c, RoughSample* const* samples) {
+    for (int32_t i = 0; i < c.padded; i += 8) {
+        Vectors room;
+        room.set(0, mirrored_room(light, splat(LAMPLESS), c.point.at(i), mirrored_ray(c, i),
+                                  load(c.roughness + i)));
+        for (int32_t k = i; k < std::min(i + 8, c.count); k++) {
+            RoughSample& own = *samples[k];
+            if (!own.of_room) own.far = own.far + vector_at(room, k - i) * own.weight;
         }
     }
 }
@@ -306,9 +329,12 @@ void find_samples(const Shading& s, int32_t row, int32_t first_row, int32_t end_
         gather_points(s, points, c);
         for (int32_t i = 0; i < c.padded; i += 8) {
             const f8 share = traced_share(*s.light, c, i);
+            if (!any(share > 0.0f)) continue;
+            const f8 room = share_of_room(c, i, load(c.roughness + i) >= ROUGH);
             for (int32_t k = i; k < std::min(i + 8, c.count); k++) {
                 if (!(share[k - i] > 0.0f)) continue;
                 RoughSample& own = *of[k] = RoughSample{};
+                own.of_room = room[k - i] > 0.0f;
                 own.id = c.id[k];
                 own.seen = points[k];
                 own.normal = vector_at(c.normal, k);
@@ -360,6 +386,7 @@ void look_around(const Shading& s, int32_t row, RoughSamples& samples) {
         c.padded = (c.count + 7) & ~7;
         gather_points(s, points, c);
         look(s, c, of, ray_counts);
+        see_room(*s.light, c, of);
         for (int32_t i = 0; i < c.count; i++) of[i]->mirrored = highlights(*s.light, c, i);
     }
 }

@@ -11,7 +11,8 @@ namespace sailenv {
 
 // A point of a rough surface, and what rays of its lobe met: weighted sums of radiance.
 struct RoughSample {
-    int32_t id = 0;  // of the instance; 0 where there is no sample
+    int32_t id = 0;        // of the instance; 0 where there is no sample
+    bool of_room = false;  // rays tell of the room, not of area lights alone
     Fragment seen;
     vec3 normal = {0.0f, 0.0f, 1.0f}, point = {0.0f, 0.0f, 0.0f};
     vec3 near = {0.0f, 0.0f, 0.0f}, far = {0.0f, 0.0f, 0.0f};  // what stands near; all else
