@@ -48,12 +48,12 @@ EMITTER_RAYS = 4
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Met:
-    """What rays met.
+    """Result of some rays.
 
     Attributes
     ----------
     texels : (R,) int32
-        The texel, `NOTHING` or `BACK`; that which a mirror shows, where one was met first.
+        The texel, `NOTHING` or `BACK`; where a mirror was met first, what it shows.
     distance : (R,) float32
         Of what was met first, such as the mirror [m].
     share : (R,) float32 or None
@@ -100,7 +100,7 @@ class Surroundings:
     mirrors: Floats = field(default_factory=lambda: np.zeros(0, np.float32))
 
     def met(self, origins: Floats, directions: Floats) -> Met:
-        """Find what rays meet, by way of one mirror if there is one on it.
+        """Find what rays meet; where that is a mirror, what it shows.
 
         Parameters
         ----------

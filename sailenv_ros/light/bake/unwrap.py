@@ -42,7 +42,7 @@ class Chart:
     width, height : int
         Of the smallest picture of it in which bilinear look-ups never meet other pieces [texels].
     pieces : int
-        Number of surfaces that were laid flat each by itself.
+        Number of surfaces that were unwrapped each by itself.
     """
 
     unwrapping: Unwrapping
