@@ -158,7 +158,9 @@ def test_little_is_left_of_the_hulls_of_a_compound(
     """PyBullet never frees the name of a hull's file that it is given: no path, however long."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     dice = np.random.default_rng(3)
-    bodies = [[SLAB, ConvexShape(points=dice.normal(size=(10, 3)))] for _ in range(401)]
+    bodies: list[list[CollisionShape]] = [
+        [SLAB, ConvexShape(points=dice.normal(size=(10, 3)))] for _ in range(401)
+    ]
     name = sys.getsizeof(b".sailenv0.obj")
     # What others in this process keep once, they keep in one of both halves.
     assert min(_grown(bodies[:201]), _grown(bodies[200:])) < 200 * name + 10_000
