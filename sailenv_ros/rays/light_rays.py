@@ -9,9 +9,12 @@ from sailenv_ros.native.ray_kernels import LightHits, light_hits, light_share
 from sailenv_ros.rays.static_geometry import StaticGeometry
 from sailenv_ros.rays.triangle_tree import TriangleTree, in_leaves, triangle_tree
 
-__all__ = ["NEVER", "RayScene", "glass_of"]
+__all__ = ["LIFT_M", "NEVER", "RayScene", "glass_of"]
 
 Floats = NDArray[np.float32]
+
+LIFT_M = 1e-3
+"""Distance from their surfaces at which rays begin [m]."""
 
 NEVER = 1e30
 """Length of rays without end [m]."""

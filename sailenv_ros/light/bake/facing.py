@@ -15,7 +15,7 @@ from sailenv_ros.light.bake.crossed_layers import above_crossed_layers
 from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.texels import Texels, rasterised
 from sailenv_ros.light.bake.worker_pool import in_chunks
-from sailenv_ros.rays.light_rays import RayScene
+from sailenv_ros.rays.light_rays import LIFT_M, RayScene
 from sailenv_ros.rays.ray_patterns import fibonacci_sphere
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
@@ -27,8 +27,6 @@ FAR_M = 0.5
 
 CLEARLY = 1.5
 """Least ratio of the openness of the back to that of the front for turning a surface."""
-
-LIFT_M = 1e-3
 
 CHUNK_TRIANGLES = 8192
 

@@ -26,7 +26,7 @@ from sailenv_ros.native.gather_kernels import (
 )
 from sailenv_ros.native.ray_kernels import LightHits
 from sailenv_ros.native.surface_light import add_radiance_met, mean_radiance_met, met_texels
-from sailenv_ros.rays.light_rays import NEVER, RayScene
+from sailenv_ros.rays.light_rays import LIFT_M, NEVER, RayScene
 from sailenv_ros.rays.ray_patterns import low_discrepancy_points
 
 __all__ = ["BACK", "NOTHING", "Looks", "Met", "Seen", "Surroundings", "seen_from"]
@@ -38,9 +38,6 @@ NOTHING = -1
 
 BACK = -2
 """Stands for the back of a surface that has none: such light is lost."""
-
-LIFT_M = 1e-3
-"""Distance before a mirror from which it is looked on [m]."""
 
 EMITTER_RAYS = 4
 """Rays from each point to each emitter; texels of a tile of 4 by 4 use different ones."""
@@ -111,19 +108,17 @@ class Surroundings:
         texels, share = self.texels_hit(hits, directions), None
         if len(self.mirrors):
             share = np.ones(len(texels), np.float32)
-            triangle = np.maximum(hits.triangle, 0)
-            ahead = np.einsum("rx,rx->r", directions, self.faces[triangle])
-            mirrored = (hits.triangle >= 0) & (self.mirrors[triangle] > 0.0) & (ahead < 0.0)
-            at = np.flatnonzero(mirrored)
-            normals = self.faces[triangle[at]]
+            at = np.flatnonzero((hits.triangle >= 0) & (self.mirrors[hits.triangle] > 0.0))
+            ahead = np.einsum("rx,rx->r", directions[at], self.faces[hits.triangle[at]])
+            at, ahead = at[ahead < 0.0], ahead[ahead < 0.0, None]
+            normals = self.faces[hits.triangle[at]]
             points = origins[at] + directions[at] * hits.distance[at, None]
-            onwards = directions[at] - 2.0 * ahead[at, None] * normals
+            onwards = directions[at] - 2.0 * ahead * normals
             beyond = self.scene.hits(points + np.float32(LIFT_M) * normals, onwards)
             found = self.texels_hit(beyond, onwards)
-            known = found >= 0
             # A mirror that shows the sky, or the inside of something, is as any other surface.
-            texels[at[known]] = found[known]
-            share[at[known]] = self.mirrors[triangle[at[known]]]
+            at, found = at[found >= 0], found[found >= 0]
+            texels[at], share[at] = found, self.mirrors[hits.triangle[at]]
         return Met(texels=texels, distance=hits.distance, share=share)
 
     def transmittance(

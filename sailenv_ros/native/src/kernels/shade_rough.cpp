@@ -89,22 +89,27 @@ f8 share_of_lamps(const Light& light, const Chunk& c, int32_t i) {
     return share;
 }
 
-// By how much rays tell what eight surfaces mirror.
-f8 traced_share(const Light& light, const Chunk& c, int32_t i) {
-    const f8 roughness = load(c.roughness + i);
+// By how much rays tell what eight surfaces mirror: `room` where they look at all that is there,
+// `all` where they look at area lights alone, too.
+struct TracedShare {
+    f8 all, room;
+};
+
+TracedShare traced_share(const Light& light, const Chunk& c, int32_t i) {
+    const f8 roughness = load(c.roughness + i), none = splat(0.0f);
     const i8 rough = (roughness >= SMOOTHEST) & (roughness < ROUGHEST) & ~load(c.empty + i);
-    if (!any(rough)) return splat(0.0f);
+    if (!any(rough)) return {none, none};
     const i8 very = rough & (roughness >= ROUGH);
-    f8 share = any(very) ? share_of_room(c, i, very) : splat(0.0f);
-    share = share * (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness));
-    if (!any(rough & (roughness < DULLER) & (share < 1.0f))) return share;
-    f8 lamps = share_of_lamps(light, c, i) * (1.0f - smoothstep(DULL, DULLER, roughness));
-    lamps = rough ? lamps : splat(0.0f);
-    if (!any(lamps > share)) return share;
+    const f8 worth = any(very) ? share_of_room(c, i, very) : none;
+    const f8 room = worth * (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness));
+    if (!any(rough & (roughness < DULLER) & (room < 1.0f))) return {room, room};
+    const f8 sharp = share_of_lamps(light, c, i) * (1.0f - smoothstep(DULL, DULLER, roughness));
+    const f8 lamps = rough ? sharp : none;
+    if (!any(lamps > room)) return {room, room};
     // What is smoother and mirrors much has rays of its own.
     const f8 own = smoothstep(SMOOTH_SHARE, LEAST_SHARE, mirrored_part(c, i));
     const f8 few = smoothstep(SMOOTHEST, SMOOTHER, roughness) * (1.0f - own);
-    return max8(share, lamps * (very ? splat(1.0f) : few));
+    return {max8(room, lamps * (very ? splat(1.0f) : few)), room};
 }
 
 // Whether a triangle's part may be rough.
@@ -271,6 +276,8 @@ void look(const Shading& s, const Chunk& c, RoughSample* const* samples,
 // Gives points whose rays look for area lights alone what pictures of the room have beside.
 void see_room(const Light& light, const Chunk& c, RoughSample* const* samples) {
     for (int32_t i = 0; i < c.padded; i += 8) {
+        const auto looks_at_room = [](const RoughSample* sample) { return sample->of_room; };
+        if (std::all_of(samples + i, samples + std::min(i + 8, c.count), looks_at_room)) continue;
         Vectors room;
         room.set(0, mirrored_room(light, splat(LAMPLESS), c.point.at(i), mirrored_ray(c, i),
                                   load(c.roughness + i)));
@@ -328,13 +335,12 @@ void find_samples(const Shading& s, int32_t row, int32_t first_row, int32_t end_
         c.padded = (c.count + 7) & ~7;
         gather_points(s, points, c);
         for (int32_t i = 0; i < c.padded; i += 8) {
-            const f8 share = traced_share(*s.light, c, i);
-            if (!any(share > 0.0f)) continue;
-            const f8 room = share_of_room(c, i, load(c.roughness + i) >= ROUGH);
+            const TracedShare share = traced_share(*s.light, c, i);
+            if (!any(share.all > 0.0f)) continue;
             for (int32_t k = i; k < std::min(i + 8, c.count); k++) {
-                if (!(share[k - i] > 0.0f)) continue;
+                if (!(share.all[k - i] > 0.0f)) continue;
                 RoughSample& own = *of[k] = RoughSample{};
-                own.of_room = room[k - i] > 0.0f;
+                own.of_room = share.room[k - i] > 0.0f;
                 own.id = c.id[k];
                 own.seen = points[k];
                 own.normal = vector_at(c.normal, k);
@@ -450,7 +456,7 @@ void sample_rough(int64_t threads, const Shading& s, int32_t first_row, int32_t 
 void mirror_rough(const Shading& s, const int32_t* x, const int32_t* y, Chunk& c) {
     const RoughSamples& samples = *s.rough;
     for (int32_t i = 0; i < c.padded; i += 8) {
-        const f8 share = traced_share(*s.light, c, i);
+        const f8 share = traced_share(*s.light, c, i).all;
         const i8 wanted = share > 0.0f;
         if (!any(wanted)) continue;
         const i8 px = load(x + i), py = load(y + i);

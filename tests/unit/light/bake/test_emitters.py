@@ -67,10 +67,8 @@ def test_looking_at_emitters_neither_adds_nor_takes_light() -> None:
 
 def test_a_mirror_lights_walls_by_the_image_of_what_shines() -> None:
     """A wall opposite gets what a second cube behind the mirror would give, times its tint."""
-    black, middle = (
-        {"base_colour": (0.0, 0.0, 0.0, 1.0), "metallic": 1.0},
-        np.array([0.1, -0.2, 0.3]),
-    )
+    black = {"base_colour": (0.0, 0.0, 0.0, 1.0), "metallic": 1.0}
+    middle = np.array([0.1, -0.2, 0.3])
     cube = model_of(box_mesh(SIDE_M), **black, emission=(RADIANCE,) * 3)
     silver = {"base_colour": (0.8, 0.8, 0.8, 1.0), "metallic": 1.0, "roughness": 0.02}
     mirror = Thing(model_of(box_mesh((0.02, 2.98, 2.98)), **silver), Pose((-1.48, 0.0, 0.0)))
