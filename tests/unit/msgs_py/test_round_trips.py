@@ -375,7 +375,8 @@ def observed_frames(draw: st.DrawFn) -> Frame:
     pose = draw(POSES)
     if len(states.ids) and draw(st.booleans()):  # few poses that are drawn see an object
         target = states.positions[0]
-        pose = look_at(tuple(target + np.array((4.0, 3.0, 2.0))), tuple(target))
+        inwards = np.copysign((4.0, 3.0, 2.0), -target)  # poses have a largest coordinate
+        pose = look_at(tuple(target + inwards), tuple(target))
     return dataclasses.replace(
         draw(frames()),
         camera=Camera(intrinsics=lens, pose=pose),
