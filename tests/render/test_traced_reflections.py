@@ -159,27 +159,46 @@ def test_rough_metal_mirrors_the_face_of_an_area_light(native: NativeRenderer) -
     seen = mean_at(picture(native, ROUGH_METAL, width=960, lights=(light,)), 0.2)
     low, high = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
     assert seen == pytest.approx(lobe_share(low, high, 0.2) * 0.3 * TINT[0], rel=0.2)
-    card = Thing(CARD, Pose((2.45, 0.7, 0.0)))
+    card = Thing(CARD, Pose((2.7, 0.8, 0.0)))  # before the panel, but not before the eye
     assert mean_at(picture(native, ROUGH_METAL, card, width=960, lights=(light,)), 0.2) < 0.01
 
 
-@pytest.mark.parametrize("roughness", [0.32, 0.4])
+PANEL = Light(
+    name="panel", type="area", position_m=(2.4, 0.5, 0.0), direction=(1.0, 0.0, 0.0),
+    width_m=0.5, height_m=0.5, intensity=10.0,
+)  # fmt: skip
+
+
+def board(roughness: float, grey: float = 0.5) -> Thing:
+    """A box of wood or plastic in the metal's place."""
+    colour = (grey, grey, grey, 1.0)
+    model = model_of(box_mesh((1.0, 2.0, 2.0)), base_colour=colour, roughness=roughness)
+    return Thing(model, Pose((3.5, 0.0, 0.0)))
+
+
+@pytest.mark.parametrize(("roughness", "grey"), [(0.32, 0.5), (0.4, 0.5), (0.355, 0.02)])
 def test_a_board_mirrors_the_face_of_an_area_light(
-    native: NativeRenderer, roughness: float
+    native: NativeRenderer, roughness: float, grey: float
 ) -> None:
     """Four hundredths of what metal does, at its own place and no other."""
-    board = model_of(
-        box_mesh((1.0, 2.0, 2.0)), base_colour=(0.5, 0.5, 0.5, 1.0), roughness=roughness
-    )
-    light = Light(
-        name="panel", type="area", position_m=(2.4, 0.5, 0.0), direction=(1.0, 0.0, 0.0),
-        width_m=0.5, height_m=0.5, intensity=10.0,
-    )  # fmt: skip
-    rgb = picture(native, Thing(board, Pose((3.5, 0.0, 0.0))), width=960, lights=(light,))
+    rgb = picture(native, board(roughness, grey), width=960, lights=(PANEL,))
     low, high = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
     expected = 0.04 * 10.0 * lobe_share(low, high, 0.25, roughness)
     assert mean_at(rgb, 0.25) == pytest.approx(expected, rel=0.2)
     assert mean_at(rgb, -0.6) < 0.1 * expected
+
+
+def test_a_board_in_the_dark_mirrors_no_room_around_a_hidden_light(native: NativeRenderer) -> None:
+    """Pictures of a bright room count by the light that arrives at the board."""
+    wall = Thing(BACK_WALL.model, Pose.from_rpy_deg((-2.0, 0.0, 0.0), (0.0, 0.0, 180.0)))
+    bright = layer(None, bounced=2.0)  # but for what has no chart
+    panel = replace(PANEL, intensity=1.0)
+    light = baked({1: chart(wall.model, wall.pose)}, [layer(panel)], bright)
+    card = Thing(CARD, Pose((2.7, 0.84, 0.0)))  # before the panel, but not before the eye
+    things = wall, board(0.4), card
+    scene = snapshot_of(things, lights=(panel,), environment=BLACK, baked=light)
+    rgb = native.render(RenderRequest(scene, camera(960), ("rgb",))).views["rgb"]
+    assert mean_at(rgb, 0.25) < 0.005  # 0.03 if it mirrored all that is there
 
 
 def test_a_lamp_has_a_highlight_on_rough_metal(native: NativeRenderer) -> None:

@@ -38,8 +38,8 @@ EDGE = 96
 """Texels along an edge of the octahedron's square, without its border."""
 
 ROUGHNESSES = (0.0, 0.15, 0.3, 0.45, 0.6)
-"""Roughness of each layer; rougher surfaces use the light map, which knows their surroundings
-better."""
+"""Roughness of each layer; what rougher surfaces mirror is the more by the light map, which knows
+their surroundings better."""
 
 SAMPLES = 96
 

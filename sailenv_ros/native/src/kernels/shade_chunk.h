@@ -98,6 +98,9 @@ void light_from_sky(const Shading& s, Chunk& c);
 // What each point mirrors, as pictures of the room have it.
 void mirror_surroundings(const Shading& s, Chunk& c);
 
+// The same of eight points in baked light, by the pictures from `point`.
+Vec3x8 mirrored_around(const Light& light, i8 point, const Chunk& c, int32_t i);
+
 // What rays from a row's pixels met: weighted sums of radiance, and of which surfaces.
 struct TracedRow {
     int32_t y = -9;

@@ -63,30 +63,30 @@ void mirror_surroundings(const Shading& s, Chunk& c) {
                 sky_irradiance(d.z, light.sky_zenith, light.sky_horizon, light.sky_ground);
             const f8 share = min8(roughness * 1.4f, splat(1.0f));
             seen = light.ambient + light.sky_share * mix(analytic_sky(light, d.z), soft, share);
-        } else if (light.reflecting && any((roughness < 0.7f) & ~load(c.empty + i))) {
-            const Vec3x8 d = mirrored_ray(c, i);
+        } else if (light.reflecting && any((roughness < MIRRORS_AROUND) & ~load(c.empty + i))) {
             i8 point{};
-            alignas(32) float open[4][8];
             const i8 ids = load(c.id + i);
-            for (int k = 0; k < 8; k++) {
-                // Where nothing is, the id is 0, and so is the point.
-                point[k] = light.reflection_table[ids[k]];
-                for (int j = 0; j < 4; j++) {
-                    open[j][k] = light.reflection_points[point[k]].light[j];
-                }
-            }
-            const Vec3x8 room = mirrored_room(light, point, c.point.at(i), d, roughness);
-            // Where less light arrives than in the middle of the room, less of the room is seen.
-            const Vec3x8 bent = {load(open[1]), load(open[2]), load(open[3])};
-            const Vec3x8 normal = c.normal.at(i);
-            const f8 there =
-                load(open[0]) + bent.x * normal.x + bent.y * normal.y + bent.z * normal.z;
-            const f8 share = clamp8(luminance(around) / max8(there, splat(1e-4f)), 0.0f, 1.0f);
-            // The rougher, the more of the half space it mirrors: that is the light around.
-            seen = mix(room * share, around, smoothstep(0.25f, 0.7f, roughness));
+            // Where nothing is, the id is 0, and so is the point.
+            for (int k = 0; k < 8; k++) point[k] = light.reflection_table[ids[k]];
+            seen = mirrored_around(light, point, c, i);
         }
         c.mirrored.set(i, seen);
     }
+}
+
+Vec3x8 mirrored_around(const Light& light, i8 point, const Chunk& c, int32_t i) {
+    alignas(32) float open[4][8];
+    for (int k = 0; k < 8; k++) {
+        for (int j = 0; j < 4; j++) open[j][k] = light.reflection_points[point[k]].light[j];
+    }
+    const Vec3x8 around = c.around.at(i), normal = c.normal.at(i);
+    const f8 roughness = load(c.roughness + i);
+    const Vec3x8 room = mirrored_room(light, point, c.point.at(i), mirrored_ray(c, i), roughness);
+    // Where less light arrives than in the middle of the room, less of the room is seen.
+    const Vec3x8 bent = {load(open[1]), load(open[2]), load(open[3])};
+    const f8 there = load(open[0]) + bent.x * normal.x + bent.y * normal.y + bent.z * normal.z;
+    const f8 share = clamp8(luminance(around) / max8(there, splat(1e-4f)), 0.0f, 1.0f);
+    return mix(room * share, around, share_mirrored_around(roughness));
 }
 
 Vec3x8 mirrored_room(const Light& light, i8 point, Vec3x8 at, Vec3x8 d, f8 roughness) {

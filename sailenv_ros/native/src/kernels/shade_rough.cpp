@@ -48,10 +48,10 @@ constexpr float ENOUGH = 8.0f;
 constexpr int32_t MOST_TIMES = 4;
 // The picture of the room without lamps, as reflection_points.py has it.
 constexpr int32_t LAMPLESS = 0;
-// Pixels take over what samples mirror that lie nearer [pixels]. Samples with normals turned by
-// more than this cosine, and those that lie off the pixel's plane by more than this share of its
-// depth, count so little that they do only where there are no others.
-constexpr float REACH = 12.0f, TURNED = 0.9f, OFF_PLANE = 0.02f, OTHER_WEIGHT = 1e-4f;
+// Pixels take over what samples mirror that lie nearer [pixels], but for those with normals turned
+// by more than this cosine, and those that lie off the pixel's plane by more than this share of its
+// depth. At ENOUGH_WEIGHT half of what is mirrored is by samples, the rest by pictures of the room.
+constexpr float REACH = 12.0f, TURNED = 0.9f, OFF_PLANE = 0.02f, ENOUGH_WEIGHT = 2.0f;
 
 // The pixel of a square whose point looks: in each row of squares another column, and so on.
 constexpr int32_t PLACES[SQUARE] = {0, 4, 2, 6, 1, 5, 3, 7};
@@ -107,8 +107,11 @@ TracedShare traced_share(const Light& light, const Chunk& c, int32_t i) {
     const f8 lamps = rough ? sharp : none;
     if (!any(lamps > room)) return {room, room};
     // What is smoother and mirrors much has rays of its own.
-    const f8 own = smoothstep(SMOOTH_SHARE, LEAST_SHARE, mirrored_part(c, i));
-    const f8 few = smoothstep(SMOOTHEST, SMOOTHER, roughness) * (1.0f - own);
+    const f8 mirrored = mirrored_part(c, i);
+    const f8 much = smoothstep(SMOOTH_SHARE, LEAST_SHARE, mirrored);
+    const f8 own = leads_everywhere(c, i, mirrored) ? none : much;
+    const f8 few = smoothstep(SMOOTHEST, SMOOTHER, roughness) *
+                   (1.0f - own * (1.0f - smoothstep(SMOOTHER, ROUGH, roughness)));
     return {max8(room, lamps * (very ? splat(1.0f) : few)), room};
 }
 
@@ -274,13 +277,14 @@ void look(const Shading& s, const Chunk& c, RoughSample* const* samples,
 }
 
 // Gives points whose rays look for area lights alone what pictures of the room have beside.
-void see_room(const Light& light, const Chunk& c, RoughSample* const* samples) {
+void see_room(const Shading& s, Chunk& c, RoughSample* const* samples) {
+    const auto looks_at_room = [](const RoughSample* sample) { return sample->of_room; };
+    if (std::all_of(samples, samples + c.count, looks_at_room)) return;
+    light_from_bake(s, c);
     for (int32_t i = 0; i < c.padded; i += 8) {
-        const auto looks_at_room = [](const RoughSample* sample) { return sample->of_room; };
         if (std::all_of(samples + i, samples + std::min(i + 8, c.count), looks_at_room)) continue;
         Vectors room;
-        room.set(0, mirrored_room(light, splat(LAMPLESS), c.point.at(i), mirrored_ray(c, i),
-                                  load(c.roughness + i)));
+        room.set(0, mirrored_around(*s.light, splat(LAMPLESS), c, i));
         for (int32_t k = i; k < std::min(i + 8, c.count); k++) {
             RoughSample& own = *samples[k];
             if (!own.of_room) own.far = own.far + vector_at(room, k - i) * own.weight;
@@ -392,7 +396,7 @@ void look_around(const Shading& s, int32_t row, RoughSamples& samples) {
         c.padded = (c.count + 7) & ~7;
         gather_points(s, points, c);
         look(s, c, of, ray_counts);
-        see_room(*s.light, c, of);
+        see_room(s, c, of);
         for (int32_t i = 0; i < c.count; i++) of[i]->mirrored = highlights(*s.light, c, i);
     }
 }
@@ -422,9 +426,7 @@ void add_sample(const RoughSample& sample, const Chunk& c, int32_t i, i8 wanted,
     const f8 off = abs8(dot(c.point.at(i) - sample.point, sample.normal));
     const f8 turned = clamp8((cosine - TURNED) * (1.0f / (1.0f - TURNED)), 0.0f, 1.0f);
     const f8 facing = off < load(c.depth + i) * OFF_PLANE ? turned * turned : splat(0.0f);
-    const f8 share =
-        (REACH - across) * (REACH - down) * (facing + max8(cosine, splat(0.01f)) * OTHER_WEIGHT);
-    const f8 counts = near ? share : splat(0.0f);
+    const f8 counts = near ? (REACH - across) * (REACH - down) * facing : splat(0.0f);
     sum = sum + counts * sample.mirrored;
     weight = weight + counts;
 }
@@ -480,7 +482,7 @@ void mirror_rough(const Shading& s, const int32_t* x, const int32_t* y, Chunk& c
             }
         }
         const f8 scale = 1.0f / max8(weight, splat(1e-20f));
-        const f8 part = weight > 0.0f ? share : splat(0.0f);
+        const f8 part = share * weight / (weight + ENOUGH_WEIGHT);
         const Vec3x8 seen = c.mirrored.at(i);
         c.mirrored.set(i, seen + part * (sum * scale - seen));
     }

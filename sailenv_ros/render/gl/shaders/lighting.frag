@@ -145,8 +145,7 @@ void main() {
     // Where less light arrives than where the room was seen from, less of it is seen as well.
     float in_the_open = dot(room_light[seen_from], vec4(1.0, world_normal));
     room *= clamp(luminance(around) / max(in_the_open, 1e-4), 0.0, 1.0);
-    // The rougher, the more of the half space it mirrors: that is the light around the point.
-    reflected = mix(room, around, smoothstep(0.25, 0.7, roughness));
+    reflected = mix(room, around, share_mirrored_around(roughness));
 #elif !defined(BAKED)
     vec3 soft = sky_irradiance(mirrored.z, sky_zenith, sky_horizon, sky_ground);
     vec3 reflected =
