@@ -1,4 +1,4 @@
-"""Small things that shine: where they are.
+"""Small things that shine, or that lie close to a lamp: where they are.
 
 Of rays in all directions few meet a lamp, and what they find is noise. So each point looks at each
 lamp besides, into the cone of a ball around it; both samples are joined by the balance heuristic
@@ -7,25 +7,36 @@ lamp besides, into the cone of a ball around it; both samples are joined by the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import label
 
 from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.rays.static_geometry import StaticGeometry
+from sailenv_ros.types.lights import Light
 
-__all__ = ["MOST_EMITTERS", "emitters_of"]
+__all__ = ["MOST_EMITTERS", "close_to_lamps", "emitters_of"]
 
 Floats = NDArray[np.float32]
 
-MOST_EMITTERS = 8
+MOST_EMITTERS = 12
 
 LARGEST_M = 0.5
 """Radius of a ball around an emitter; what is larger is met often enough."""
 
-LEAST_SHARE = 0.01
+GROUP_M = 0.04
+"""Side of the cells of space that join what shines to one emitter, cell by cell [m]."""
+
+LEAST_SHARE = 0.002
 """Least power of an emitter that is sampled, as a share of the strongest one's."""
+
+STRONGLY = 30.0, 300.0, 3000.0
+"""How many times as much light as at the usual distance arrives close to a lamp, at least."""
+
+NEAREST_M = 0.02
+"""Surfaces are as far from the middle of a lamp, at least [m]."""
 
 
 def emitters_of(
@@ -44,12 +55,53 @@ def emitters_of(
         bright = np.flatnonzero(emission.any(axis=1))
         for own in np.unique(owner[bright]):
             members = bright[owner[bright] == own]
-            points = texels.positions[members].astype(np.float64)
-            middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
-            radius = float(np.linalg.norm(points - middle, axis=1).max()) + 0.01
-            power = float(emission[members].mean()) * radius * radius
-            if radius <= LARGEST_M:
-                found.append((power, [*middle, radius]))
+            positions = texels.positions[members].astype(np.float64)
+            for group in _groups(positions):
+                points = positions[group]
+                middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
+                radius = float(np.linalg.norm(points - middle, axis=1).max()) + 0.01
+                power = float(emission[members[group]].mean()) * radius * radius
+                if radius <= LARGEST_M:
+                    found.append((power, [*middle, radius]))
     found.sort(key=lambda one: -one[0])
     chosen = [ball for power, ball in found if power >= LEAST_SHARE * found[0][0]]
     return np.array(chosen[:MOST_EMITTERS], np.float32).reshape(-1, 4)
+
+
+def _groups(positions: NDArray[np.float64]) -> list[NDArray[np.intp]]:
+    """Return which points lie near each other: the bulbs of a chandelier are a group each."""
+    cells = np.floor((positions - positions.min(axis=0)) / GROUP_M).astype(np.intp)
+    if cells.max() > LARGEST_M / GROUP_M * 8:
+        return [np.arange(len(positions))]
+    filled = np.zeros(cells.max(axis=0) + 1, bool)
+    filled[tuple(cells.T)] = True
+    numbers, count = label(filled, np.ones((3, 3, 3)))
+    of_point = numbers[tuple(cells.T)]
+    return [np.flatnonzero(of_point == number) for number in range(1, count + 1)]
+
+
+def close_to_lamps(lights: Sequence[Light], texels: Texels, albedo: Floats) -> list[Floats]:
+    """Return what texels close to lamps send back of their light, as if they faced it.
+
+    Lamps are balls, which may shine on what their middle lies behind: a stem through them.
+
+    Parameters
+    ----------
+    albedo : (N, 3) float32
+
+    Returns
+    -------
+    sent : list of (N, 3) float32
+        For 1 W/sr: several for each point and spot light, 0 of texels that are not so close; see
+        `STRONGLY`.
+    """
+    found = []
+    for light in lights:
+        if light.type not in ("point", "spot"):
+            continue
+        offset = np.asarray(light.position_m, np.float32) - texels.positions
+        square = np.maximum(np.einsum("nx,nx->n", offset, offset), np.float32(NEAREST_M**2))
+        sent = albedo / square[:, None]
+        usual = float(np.median(square))
+        found += [np.where((times * square < usual)[:, None], sent, 0) for times in STRONGLY]
+    return found

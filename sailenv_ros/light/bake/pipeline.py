@@ -17,7 +17,7 @@ from sailenv_ros.light.bake.back_to_back import back_to_back_faces
 from sailenv_ros.light.bake.bounces import Patches, patches_of
 from sailenv_ros.light.bake.denoise import denoised
 from sailenv_ros.light.bake.direct import Points
-from sailenv_ros.light.bake.emitters import emitters_of
+from sailenv_ros.light.bake.emitters import close_to_lamps, emitters_of
 from sailenv_ros.light.bake.facing import lit_texels
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.gather import Surroundings
@@ -140,11 +140,15 @@ class _Bake:
         )  # fmt: skip
         texels = lit_texels(geometry, scene, layout, stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
-        emission = emission_of(geometry, layout, texels)
+        albedo, emission = (
+            albedo_of(geometry, layout, texels),
+            emission_of(geometry, layout, texels),
+        )
         drawn = contents.instances
         glows = glows_of(geometry, texels.triangle, {d.instance.id: d.lit_by for d in drawn})
         mirrors = mirror_shares(geometry, {d.instance.id: d.instance.category for d in drawn})
-        emitters = emitters_of(geometry, texels, (emission, *glows.values()))
+        lit = close_to_lamps(contents.lights, texels, albedo)
+        emitters = emitters_of(geometry, texels, (emission, *glows.values(), *lit))
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,
@@ -174,7 +178,7 @@ class _Bake:
             around=self._around,
             points=points,
             patches=patches_of(geometry, texels),
-            albedo=albedo_of(geometry, layout, texels),
+            albedo=albedo,
             emission=emission,
             glows=glows,
             texels=texels,

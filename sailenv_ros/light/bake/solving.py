@@ -37,6 +37,9 @@ CHUNK_RAYS = 131_072
 EDGE_SHARE = 0.03
 """Least difference between neighbours' shares of a light at which a shadow edge is assumed."""
 
+CLOSE_M = 0.15
+"""Surfaces nearer to the middle of a lamp stand at it [m]."""
+
 EDGE_TEXELS = 5
 """Side of the squares of neighbours."""
 
@@ -274,18 +277,27 @@ class Solver:
             self._stages.run(shine, len(lit), rays, report)
 
         mixed = np.flatnonzero(self._outside & np.isnan(known))
-        shine_on(mixed, settings.light_rays, None)
+        shine_on(mixed, settings.light_rays * self._times_of_rays(light), None)
         shine_on(np.flatnonzero(self._outside & (known > 0.0)), settings.light_rays, known)
         if light.type != "directional":
             return SolvedLight(light, direct)
         return SolvedLight(light, direct, visibility, mixed)
+
+    def _times_of_rays(self, light: Light) -> int:
+        """Return by how much more rays shadows need of what stands at a lamp: they are wide."""
+        if light.type not in ("point", "spot"):
+            return 1
+        offsets = self._samples.points.positions - np.asarray(light.position_m, np.float32)
+        near = np.einsum("nx,nx->n", offsets, offsets) < CLOSE_M**2
+        return 4 if near.any() else 1
 
     def _known_shares(self, light: Light) -> Floats:
         """Return (N,) float32: how much of a light arrives where no shadow ends; else NaN."""
         texels, points = self._samples.texels, self._samples.points
         if texels is None:
             return np.full(self._samples.count, np.nan, np.float32)
-        count, pattern = texels.count, low_discrepancy_points(self._settings.light_rays // 4)
+        rays = self._settings.light_rays // 4 * self._times_of_rays(light)
+        count, pattern = texels.count, low_discrepancy_points(rays)
         lowest, highest = np.empty((2, count), np.float32)
         scene = self._samples.around.scene
 

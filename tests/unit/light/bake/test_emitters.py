@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
 from tests.support.bake_scenes import COARSE, hollow, read, still
-from tests.support.tiny_scenes import Thing, box_mesh, model_of
+from tests.support.tiny_scenes import Thing, box_mesh, mesh_of, model_of
 
 SIDE_M = 0.06
 RADIANCE = 50.0
@@ -82,5 +83,56 @@ def test_a_mirror_lights_walls_by_the_image_of_what_shines() -> None:
     straight, mirrored = (cube_light(points, normals, place) for place in (middle, image))
     assert (0.8 * mirrored / straight).max() > 0.1
     error = bounced[chosen][:, 0] / (straight + 0.8 * mirrored) - 1.0
+    assert error.mean() == pytest.approx(0.0, abs=0.02)
+    assert error.std() < 0.06
+
+
+def roughness_of(points: np.ndarray, values: np.ndarray) -> float:
+    """How far the light of the four upright walls is from smooth, over itself (RMS)."""
+    found = []
+    for axis, sign in itertools.product((0, 1), (-1.0, 1.0)):
+        chosen = (sign * points[:, axis] > 1.49) & (np.abs(points[:, 1 - axis]) < 1.3)
+        chosen &= np.abs(points[:, 2]) < 1.0
+        across, up = points[chosen, 1 - axis], points[chosen, 2]
+        basis = np.stack([across**i * up**j for i in range(7) for j in range(7 - i)], axis=1)
+        smooth = basis @ np.linalg.lstsq(basis, values[chosen], rcond=None)[0]
+        found.append(values[chosen] / smooth - 1.0)
+    return float(np.sqrt(np.mean(np.concatenate(found) ** 2)))
+
+
+def test_a_stem_through_a_lamp_leaves_neither_blots_nor_bands() -> None:
+    """What it reflects comes from a centimetre of it; its shadows are as wide as the room."""
+    black = {"base_colour": (0.0, 0.0, 0.0, 1.0), "metallic": 1.0}
+    stem = model_of(box_mesh((0.02, 0.02, 0.6)), base_colour=(1.0, 1.0, 1.0, 1.0))
+    lamp = Light(name="lamp", type="point", position_m=(0.0, 0.0, 0.0), intensity=1.0)
+    snapshot = still([Thing(hollow(3.0, **black)), Thing(stem)], lights=(lamp,))
+    baked = bake(snapshot, settings=replace(COARSE, texel_m=0.05))
+    points, bounced = read(baked, 1, snapshot, baked.layers[1].bounced, steps=24)
+    assert roughness_of(points, bounced[:, 0]) < 0.15
+    points, direct = read(baked, 1, snapshot, baked.layers[1].direct, steps=24)
+    assert roughness_of(points, direct) < 0.02
+
+
+def test_each_bulb_of_a_chandelier_is_an_emitter() -> None:
+    """Not the ball around all of them, of which they fill little."""
+    black = {"base_colour": (0.0, 0.0, 0.0, 1.0), "metallic": 1.0}
+    cube, places = box_mesh(SIDE_M), np.array([(-0.4, 0.0, 0.0), (0.0, 0.1, 0.0), (0.4, 0.0, 0.0)])
+    count = len(cube.positions)
+    bulbs = mesh_of(
+        np.concatenate([cube.positions + place for place in places]),
+        np.tile(cube.normals, (3, 1)),
+        np.concatenate([(cube.uvs + np.array((k, 0.0))) / (3.0, 1.0) for k in range(3)]),
+        np.concatenate([cube.triangles + number * count for number in range(3)]),
+    )
+    chandelier = model_of(bulbs, **black, emission=(RADIANCE,) * 3)
+    snapshot = still([Thing(hollow(3.0, **black)), Thing(chandelier)], lights=())
+    baked = bake(snapshot, settings=replace(COARSE, texel_m=0.05))
+    points, bounced = read(baked, 1, snapshot, baked.layers[0].bounced, steps=12)
+    # Neither along the row of them, where one hides another, nor in the edges of walls.
+    chosen = (np.abs(points[:, 0]) < 1.0) & (np.sort(np.abs(points), axis=1)[:, 1] < 1.3)
+    points = points[chosen]
+    normals = -np.sign(points) * np.eye(3)[np.argmax(np.abs(points), axis=1)]
+    expected = sum(cube_light(points, normals, place) for place in places)
+    error = bounced[chosen][:, 0] / expected - 1.0
     assert error.mean() == pytest.approx(0.0, abs=0.02)
     assert error.std() < 0.06
