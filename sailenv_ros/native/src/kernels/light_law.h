@@ -153,7 +153,7 @@ LIGHT_LAW Real mirrored_bias(Real roughness, Real cosine) {
 // Roughness from where on what is mirrored of a room is less and less what a picture of it has, and
 // from where on it is the light around the point: rough surfaces mirror most of the half space.
 const float MIRRORS_ROOM = 0.35f;
-const float MIRRORS_AROUND = 0.8f;
+const float MIRRORS_AROUND = 0.7f;
 
 LIGHT_LAW Real share_mirrored_around(Real roughness) {
     return smoothstep(MIRRORS_ROOM, MIRRORS_AROUND, roughness);
