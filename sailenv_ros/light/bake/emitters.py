@@ -29,6 +29,9 @@ LARGEST_M = 0.5
 GROUP_M = 0.04
 """Side of the cells of space that join what shines to one emitter, cell by cell [m]."""
 
+MOST_CELLS = 100
+"""What is longer [cells] is not looked through for bulbs."""
+
 LEAST_SHARE = 0.002
 """Least power of an emitter that is sampled, as a share of the strongest one's."""
 
@@ -71,7 +74,7 @@ def emitters_of(
 def _groups(positions: NDArray[np.float64]) -> list[NDArray[np.intp]]:
     """Return which points lie near each other: the bulbs of a chandelier are a group each."""
     cells = np.floor((positions - positions.min(axis=0)) / GROUP_M).astype(np.intp)
-    if cells.max() > LARGEST_M / GROUP_M * 8:
+    if cells.max() >= MOST_CELLS:
         return [np.arange(len(positions))]
     filled = np.zeros(cells.max(axis=0) + 1, bool)
     filled[tuple(cells.T)] = True

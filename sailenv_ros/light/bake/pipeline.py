@@ -140,10 +140,8 @@ class _Bake:
         )  # fmt: skip
         texels = lit_texels(geometry, scene, layout, stages.workers)
         self._geometry, self._texels, self._layout = geometry, texels, layout
-        albedo, emission = (
-            albedo_of(geometry, layout, texels),
-            emission_of(geometry, layout, texels),
-        )
+        albedo = albedo_of(geometry, layout, texels)
+        emission = emission_of(geometry, layout, texels)
         drawn = contents.instances
         glows = glows_of(geometry, texels.triangle, {d.instance.id: d.lit_by for d in drawn})
         mirrors = mirror_shares(geometry, {d.instance.id: d.instance.category for d in drawn})
