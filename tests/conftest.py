@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -30,6 +31,8 @@ def _isolate_ros() -> None:
 
 
 _isolate_ros()
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # by a shell that runs them in the background
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 # What its user has saved on this machine is no part of the tests.
 os.environ["SAILENV_SCENES"] = str(ROOT / "build" / "no_scenes")
 

@@ -177,11 +177,9 @@ def test_what_makes_no_sense_is_refused(
 
 
 PROGRAM = """
-import signal
 import sys
 from sailenv_ros import dataset
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # shells' background jobs ignore it
     for number, one in enumerate(dataset.stream(sys.argv[1], workers=2)):
         print("frame", flush=True)
         sys.stdin.readline()
