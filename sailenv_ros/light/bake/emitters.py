@@ -30,7 +30,7 @@ GROUP_M = 0.04
 """Side of the cells of space that join what shines to one emitter, cell by cell [m]."""
 
 MOST_CELLS = 100
-"""What is longer [cells] is not looked through for bulbs."""
+"""Length up to which things are looked through for bulbs [cells]."""
 
 LEAST_SHARE = 0.002
 """Least power of an emitter that is sampled, as a share of the strongest one's."""
