@@ -10,7 +10,7 @@ from typing import Any
 
 from sailenv_ros.scene_export.optics import point_intensity, view_angles
 from sailenv_ros.types.camera import CameraIntrinsics
-from sailenv_ros.types.lights import LUMENS_PER_WATT, Light
+from sailenv_ros.types.lights import LAMP_TYPES, LUMENS_PER_WATT, Light
 
 __all__ = ["LIGHTS", "gltf_camera", "gltf_light"]
 
@@ -30,7 +30,7 @@ def gltf_light(light: Light) -> dict[str, Any]:
         "color": list(colour),
         "intensity": intensity * LUMENS_PER_WATT,
     }
-    if light.type in ("point", "spot"):
+    if light.type in LAMP_TYPES:
         entry["range"] = light.range_m
     if light.type == "area":
         entry["spot"] = {"innerConeAngle": 0.0, "outerConeAngle": 0.5 * math.pi}

@@ -19,6 +19,7 @@ from sailenv_ros.types.validation import Bounds, check_bounds, checked_flag, vec
 
 __all__ = [
     "ENVIRONMENT_LIMITS",
+    "LAMP_TYPES",
     "LIGHT_ATTRIBUTES",
     "LIGHT_KINDS",
     "LIGHT_LIMITS",
@@ -36,6 +37,9 @@ __all__ = [
 ]
 
 LightType = Literal["directional", "point", "spot", "area"]
+
+LAMP_TYPES: tuple[LightType, ...] = ("point", "spot")
+"""Types of lights that belong to lamps; area lights stand for windows."""
 
 LIGHT_LIMITS: Mapping[str, Bounds] = {
     "intensity": Bounds(least=0.0, most=1e6),

@@ -12,13 +12,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.types.lights import Light
+from sailenv_ros.types.lights import LAMP_TYPES, Light
 from sailenv_ros.world.labelled_pieces import LabelledPiece
 
 __all__ = ["REACH_M", "is_lamp", "lit_by"]
-
-LAMP_TYPES = ("point", "spot")
-"""Types of lights that belong to lamps; area lights stand for windows."""
 
 REACH_M = 0.5
 """A light is in the nearest lamp if it is no farther from the box around it [m].

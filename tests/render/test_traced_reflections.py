@@ -133,6 +133,12 @@ ROUGH_METAL = Thing(
 )
 
 
+PANEL = Light(
+    name="panel", type="area", position_m=(2.4, 0.5, 0.0), direction=(1.0, 0.0, 0.0),
+    width_m=0.5, height_m=0.5, intensity=10.0,
+)  # fmt: skip
+
+
 @pytest.mark.parametrize("distance_m", [0.2, 0.5])
 def test_rough_metal_mirrors_what_its_lobe_meets(native: NativeRenderer, distance_m: float) -> None:
     """A lamp before it, against 200,000 rays of GGX's lobe."""
@@ -147,26 +153,12 @@ def test_rough_metal_mirrors_what_its_lobe_meets(native: NativeRenderer, distanc
 
 def test_rough_metal_mirrors_the_face_of_an_area_light(native: NativeRenderer) -> None:
     """It has no body; what stands before it hides it."""
-    light = Light(
-        name="panel",
-        type="area",
-        position_m=(2.4, 0.5, 0.0),
-        direction=(1.0, 0.0, 0.0),
-        width_m=0.5,
-        height_m=0.5,
-        intensity=0.3,
-    )
+    light = replace(PANEL, intensity=0.3)
     seen = mean_at(picture(native, ROUGH_METAL, width=960, lights=(light,)), 0.2)
     low, high = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
     assert seen == pytest.approx(lobe_share(low, high, 0.2) * 0.3 * TINT[0], rel=0.2)
     card = Thing(CARD, Pose((2.7, 0.8, 0.0)))  # before the panel, but not before the eye
     assert mean_at(picture(native, ROUGH_METAL, card, width=960, lights=(light,)), 0.2) < 0.01
-
-
-PANEL = Light(
-    name="panel", type="area", position_m=(2.4, 0.5, 0.0), direction=(1.0, 0.0, 0.0),
-    width_m=0.5, height_m=0.5, intensity=10.0,
-)  # fmt: skip
 
 
 def board(roughness: float, grey: float = 0.5) -> Thing:

@@ -15,9 +15,9 @@ from sailenv_ros.native.bake_types import LitPoints
 from sailenv_ros.native.light_kernels import direct_light, light_rays
 from sailenv_ros.rays.light_rays import RayScene
 from sailenv_ros.types.light_shapes import light_record
-from sailenv_ros.types.lights import Light
+from sailenv_ros.types.lights import LAMP_TYPES, Light
 
-__all__ = ["Points", "arriving", "free_shares", "visible_range"]
+__all__ = ["Points", "arriving", "free_shares", "squared_distances", "visible_range"]
 
 Floats = NDArray[np.float32]
 
@@ -60,7 +60,7 @@ class Points:
 
         The ball of a lamp is small: the same points of it for all leave no noise.
         """
-        if light.type in ("point", "spot"):
+        if light.type in LAMP_TYPES:
             return replace(self, shifts=np.zeros_like(self.shifts)).lit()
         return self.lit()
 
@@ -72,6 +72,13 @@ class Points:
             faces=self.faces[chosen],
             shifts=self.shifts[chosen],
         )
+
+
+def squared_distances(light: Light, positions: Floats) -> Floats:
+    """Return (N,) float32: those of positions, (N, 3), from the middle of a light [m²]."""
+    offsets = np.asarray(light.position_m, np.float32) - positions
+    squares: Floats = np.einsum("nx,nx->n", offsets, offsets)
+    return squares
 
 
 def visible_range(

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
+from sailenv_ros.light.bake.direct import squared_distances
 from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.rays.static_geometry import StaticGeometry
-from sailenv_ros.types.lights import Light
+from sailenv_ros.types.lights import LAMP_TYPES, Light
 
 __all__ = ["MOST_EMITTERS", "close_to_lamps", "emitters_of"]
 
@@ -35,11 +36,12 @@ MOST_CELLS = 100
 LEAST_SHARE = 0.002
 """Least power of an emitter that is sampled, as a share of the strongest one's."""
 
-STRONGLY = 30.0, 300.0, 3000.0
-"""How many times as much light as at the usual distance arrives close to a lamp, at least."""
+LEVELS = 30.0, 300.0, 3000.0
+"""Surfaces around a lamp are emitters where at least so many times as much light arrives as at the
+median distance; each level is within the former."""
 
 NEAREST_M = 0.02
-"""Surfaces are as far from the middle of a lamp, at least [m]."""
+"""Surfaces nearer to the middle of a lamp count as that far [m]."""
 
 
 def emitters_of(
@@ -95,16 +97,15 @@ def close_to_lamps(lights: Sequence[Light], texels: Texels, albedo: Floats) -> l
     Returns
     -------
     sent : list of (N, 3) float32
-        For 1 W/sr: several for each point and spot light, 0 of texels that are not so close; see
-        `STRONGLY`.
+        For 1 W/sr: one of each level for each point and spot light, 0 of texels beyond it.
     """
     found = []
     for light in lights:
-        if light.type not in ("point", "spot"):
+        if light.type not in LAMP_TYPES:
             continue
-        offset = np.asarray(light.position_m, np.float32) - texels.positions
-        square = np.maximum(np.einsum("nx,nx->n", offset, offset), np.float32(NEAREST_M**2))
+        square = squared_distances(light, texels.positions)
+        square = np.maximum(square, np.float32(NEAREST_M**2))
         sent = albedo / square[:, None]
         usual = float(np.median(square))
-        found += [np.where((times * square < usual)[:, None], sent, 0) for times in STRONGLY]
+        found += [np.where((times * square < usual)[:, None], sent, 0) for times in LEVELS]
     return found

@@ -15,14 +15,14 @@ from scipy.ndimage import maximum_filter, minimum_filter
 
 from sailenv_ros.light.bake.bounces import Patches, bounced_radiance
 from sailenv_ros.light.bake.denoise import stand_ins
-from sailenv_ros.light.bake.direct import Points, arriving, visible_range
+from sailenv_ros.light.bake.direct import Points, arriving, squared_distances, visible_range
 from sailenv_ros.light.bake.gather import BACK, Seen, Surroundings, seen_from
 from sailenv_ros.light.bake.sampling import pass_shift
 from sailenv_ros.light.bake.settings import INSIDE_SHARE, BakeSettings
 from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.light.bake.worker_pool import in_chunks
 from sailenv_ros.rays.ray_patterns import in_turns, low_discrepancy_points
-from sailenv_ros.types.lights import Light
+from sailenv_ros.types.lights import LAMP_TYPES, Light
 
 __all__ = ["Samples", "SolvedLight", "Solver", "Stages"]
 
@@ -38,7 +38,7 @@ EDGE_SHARE = 0.03
 """Least difference between neighbours' shares of a light at which a shadow edge is assumed."""
 
 CLOSE_M = 0.15
-"""Surfaces nearer to the middle of a lamp stand at it [m]."""
+"""Surfaces nearer to the middle of a lamp are close to it [m]."""
 
 EDGE_TEXELS = 5
 """Side of the squares of neighbours."""
@@ -261,7 +261,8 @@ class Solver:
     def _straight(self, light: Light, report: Callable[[float], None]) -> SolvedLight:
         count, settings = self._samples.count, self._settings
         direct, visibility = np.zeros(count, np.float32), np.zeros(count, np.float32)
-        known = self._known_shares(light)
+        edge_rays = settings.light_rays * self._times_of_rays(light)
+        known = self._known_shares(light, edge_rays // 4)
         scene = self._samples.around.scene
 
         def shine_on(lit: NDArray[np.intp], rays: int, given: Floats | None) -> None:
@@ -277,26 +278,24 @@ class Solver:
             self._stages.run(shine, len(lit), rays, report)
 
         mixed = np.flatnonzero(self._outside & np.isnan(known))
-        shine_on(mixed, settings.light_rays * self._times_of_rays(light), None)
+        shine_on(mixed, edge_rays, None)
         shine_on(np.flatnonzero(self._outside & (known > 0.0)), settings.light_rays, known)
         if light.type != "directional":
             return SolvedLight(light, direct)
         return SolvedLight(light, direct, visibility, mixed)
 
     def _times_of_rays(self, light: Light) -> int:
-        """Return by how much more rays shadows need of what stands at a lamp: they are wide."""
-        if light.type not in ("point", "spot"):
+        """Return how many times as many rays a light needs: more where surfaces are close to it."""
+        if light.type not in LAMP_TYPES:
             return 1
-        offsets = self._samples.points.positions - np.asarray(light.position_m, np.float32)
-        near = np.einsum("nx,nx->n", offsets, offsets) < CLOSE_M**2
+        near = squared_distances(light, self._samples.points.positions) < CLOSE_M**2
         return 4 if near.any() else 1
 
-    def _known_shares(self, light: Light) -> Floats:
+    def _known_shares(self, light: Light, rays: int) -> Floats:
         """Return (N,) float32: how much of a light arrives where no shadow ends; else NaN."""
         texels, points = self._samples.texels, self._samples.points
         if texels is None:
             return np.full(self._samples.count, np.nan, np.float32)
-        rays = self._settings.light_rays // 4 * self._times_of_rays(light)
         count, pattern = texels.count, low_discrepancy_points(rays)
         lowest, highest = np.empty((2, count), np.float32)
         scene = self._samples.around.scene

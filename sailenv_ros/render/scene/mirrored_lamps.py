@@ -20,7 +20,7 @@ from sailenv_ros.native.render_types import record
 from sailenv_ros.render.scene.reflection_map import EDGE, Glint, octahedral_directions
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.light_shapes import light_record
-from sailenv_ros.types.lights import Light, area_sides, lamp_rows
+from sailenv_ros.types.lights import LAMP_TYPES, Light, area_sides, lamp_rows
 
 __all__ = ["Seen", "Surroundings", "glint_of", "mirrored_lights", "radiance_of"]
 
@@ -122,7 +122,7 @@ def radiance_of(light: Light, around: Surroundings) -> NDArray[np.float32]:
 
 def glint_of(light: Light, around: Surroundings) -> Glint | None:
     """Return what arrives from a point or spot light; None of other kinds, and from hidden ones."""
-    if light.type not in ("point", "spot"):
+    if light.type not in LAMP_TYPES:
         return None
     here = around.position_m.astype(np.float32)[None]
     nowhere = np.zeros((1, 3), np.float32)
