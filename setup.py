@@ -176,9 +176,10 @@ class BuildNativeLibrary(build_ext):
         native_compile = load_native_compile()
         strict = bool(os.environ.get(native_compile.STRICT_VARIABLE))
         output = Path(self.get_ext_fullpath(extension.name))
-        # scripts/setup has compiled it already.
+        # scripts/setup has compiled it already, for this machine alone perhaps.
         compiled = Path(PACKAGE, "native", native_compile.LIBRARY_NAME)
-        if native_compile.compiled_hash(compiled) == native_compile.source_hash():
+        sets = {native_compile.own_instruction_set(compiled)} if self.editable_mode else None
+        if native_compile.fits_sources(compiled, sets):
             if output.resolve() != compiled.resolve():
                 output.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(compiled, output)

@@ -5,14 +5,16 @@ is compiled once for each instruction set, the rest once; the loader (`library.p
 functions of the best set that the processor has. setup.py runs this file by its path, before
 anything is installed, and so does scripts/build-native: it imports nothing of the project.
 
-    python sailenv_ros/native/compile.py [--if-changed] [--output FILE]
+    python sailenv_ros/native/compile.py [--if-changed] [--own] [--output FILE]
 """
 
 from __future__ import annotations
 
 import argparse
+import ctypes
 import hashlib
 import os
+import platform
 import re
 import shlex
 import shutil
@@ -24,10 +26,12 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 __all__ = [
+    "INSTRUCTION_SETS",
     "LIBRARY_NAME",
     "SOURCES",
     "CompilerError",
     "compile_library",
+    "fits_sources",
     "has_sources",
     "source_hash",
 ]
@@ -42,7 +46,10 @@ INSTRUCTION_SETS: dict[str, dict[str, tuple[str, ...]]] = {
         "avx512": ("-march=x86-64-v4", "-mprefer-vector-width=512"),
     }
 }
-"""Flags of each instruction set, by machine; other machines have ``portable`` alone."""
+"""Flags of each instruction set, by machine, from the one that every processor has to the best.
+
+Other machines have ``portable`` alone. The order is that of sailenv_instruction_set_level (abi.cpp).
+"""
 
 FLAGS = (
     "-std=c++17",
@@ -171,8 +178,33 @@ def instruction_sets(compiler: Sequence[str]) -> dict[str, tuple[str, ...]]:
 
     That may be another than this one: ``CXX=aarch64-linux-gnu-g++`` compiles for ARM.
     """
-    machine = _told(compiler, "-dumpmachine").partition("-")[0]
-    return INSTRUCTION_SETS.get(machine, {"portable": ()})
+    return _sets_of(_told(compiler, "-dumpmachine").partition("-")[0])
+
+
+def own_instruction_set(library: Path) -> str:
+    """Return the best instruction set of this processor.
+
+    Parameters
+    ----------
+    library : Path
+        Tells it, where it was made of the present sources; else abi.cpp is compiled to tell it.
+
+    Raises
+    ------
+    CompilerError
+        If there is no compiler, or it compiles for another machine.
+    """
+    with tempfile.TemporaryDirectory(prefix="sailenv-native-") as name:
+        teller = library
+        if compiled_hash(library) != source_hash():
+            teller = Path(name) / LIBRARY_NAME
+            flags = (*FLAGS, '-DSAILENV_SOURCE_HASH=""', "-shared")
+            _run([*find_compiler(), *flags, SOURCES / "abi.cpp", "-o", teller], "the compiler")
+        try:
+            level = int(ctypes.CDLL(str(teller)).sailenv_instruction_set_level())
+        except OSError as problem:
+            raise CompilerError(f"the compiler is not for this machine: {problem}") from problem
+    return list(_sets_of(platform.machine()))[level]
 
 
 def has_sources() -> bool:
@@ -192,6 +224,27 @@ def compiled_hash(library: Path) -> str:
     except OSError:
         return ""
     return found[1].decode() if found else ""
+
+
+def fits_sources(library: Path, sets: Collection[str] | None = None) -> bool:
+    """Return whether a library was made of the present sources and has these instruction sets.
+
+    Parameters
+    ----------
+    library : Path
+        It need not exist.
+    sets : collection of str or None
+        None asks for all that processors of this machine's kind may have.
+    """
+    if compiled_hash(library) != source_hash():
+        return False
+    had = re.findall(rb"\0sailenv_self_test_(\w+)\0", library.read_bytes())
+    wanted = _sets_of(platform.machine()) if sets is None else sets
+    return {name.encode() for name in wanted} <= set(had)
+
+
+def _sets_of(machine: str) -> dict[str, tuple[str, ...]]:
+    return INSTRUCTION_SETS.get(machine, {"portable": ()})
 
 
 def _told(compiler: Sequence[str], option: str) -> str:
@@ -256,14 +309,18 @@ def main() -> int:
         "--if-changed", action="store_true", help="do nothing where it fits the sources"
     )
     parser.add_argument(
+        "--own", action="store_true", help="for this machine's processor alone: a third of the time"
+    )
+    parser.add_argument(
         "--output", type=Path, default=SOURCES.parent / LIBRARY_NAME, help="beside the sources"
     )
     arguments = parser.parse_args()
     output = arguments.output
-    if arguments.if_changed and compiled_hash(output) == source_hash():
-        return 0
+    objects = SOURCES.parents[2] / "build" / "native"
     try:
-        compile_library(output, objects=SOURCES.parents[2] / "build" / "native", strict=True)
+        sets = {own_instruction_set(output)} if arguments.own else None
+        if not (arguments.if_changed and fits_sources(output, sets)):
+            compile_library(output, objects=objects, sets=sets, strict=True)
     except CompilerError as problem:
         sys.stderr.write(f"the native library was not compiled: {problem}\n")
         return 1

@@ -38,7 +38,7 @@ __all__ = [
 ABI_VERSION = 5
 """`SAILENV_ABI_VERSION` of src/abi.h."""
 
-INSTRUCTION_SETS = ("portable", "avx2", "avx512")
+INSTRUCTION_SETS = tuple(native_compile.INSTRUCTION_SETS["x86_64"])
 """Instruction sets, from the one that every processor has to the best."""
 
 LIBRARY_VARIABLE = "SAILENV_NATIVE_LIBRARY"
@@ -93,6 +93,8 @@ class NativeLibrary:
             if hasattr(self._library, f"sailenv_self_test_{name}")
         )
         """Instruction sets that both the processor and the library have, the best one last."""
+        if not self.instruction_sets:
+            raise NativeLibraryError(f"{path} was made for processors with other instructions")
         asked = instruction_set or os.environ.get(INSTRUCTION_SET_VARIABLE)
         if asked and asked not in self.instruction_sets:
             raise UnknownName("instruction set of this machine", asked, self.instruction_sets)

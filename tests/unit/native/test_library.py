@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -99,6 +100,36 @@ def test_a_library_that_does_not_fit_is_refused(
     monkeypatch.setattr(library, "ABI_VERSION", library.ABI_VERSION + 1)
     with pytest.raises(NativeLibraryError, match="of version"):
         NativeLibrary(load_library(None).path)
+
+
+def test_a_library_may_have_one_instruction_set(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Made for one processor it works there, is known as incomplete, and is refused elsewhere."""
+    everything = Path(native_compile.__file__).parent / "src"
+    if not (everything / "abi.cpp").is_file():
+        everything = Path(__file__).parents[3] / "sailenv_ros" / "native" / "src"
+    sources = tmp_path / "src"
+    (sources / "kernels").mkdir(parents=True)
+    for path in [*everything.glob("*.*"), everything / "kernels" / "self_test.cpp"]:
+        shutil.copy(path, sources / path.relative_to(everything))
+    monkeypatch.setattr(native_compile, "SOURCES", sources)
+    hash_of_sources = native_compile.source_hash(sources)
+    monkeypatch.setattr(native_compile, "source_hash", lambda _=sources: hash_of_sources)
+    output = tmp_path / "library.so"
+    assert not native_compile.fits_sources(output)
+    own = native_compile.own_instruction_set(output)
+    assert own == load_library(None).instruction_sets[-1]
+    native_compile.compile_library(output, sources=sources, sets={own})
+    assert native_compile.own_instruction_set(output) == own
+    assert native_compile.fits_sources(output, {own})
+    assert native_compile.fits_sources(output) == (own == "portable")
+    assert NativeLibrary(output).instruction_sets == (own,)
+    native_compile.compile_library(output, sources=sources)
+    assert native_compile.fits_sources(output)
+    monkeypatch.setattr(library, "INSTRUCTION_SETS", ())
+    with pytest.raises(NativeLibraryError, match="processors with other instructions"):
+        NativeLibrary(output)
 
 
 def test_arrays_are_checked_before_their_memory_is_used() -> None:
