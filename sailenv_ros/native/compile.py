@@ -48,7 +48,7 @@ INSTRUCTION_SETS: dict[str, dict[str, tuple[str, ...]]] = {
 }
 """Flags of each instruction set, by machine, from the one that every processor has to the best.
 
-Other machines have ``portable`` alone. The order is that of sailenv_instruction_set_level (abi.cpp).
+Other machines have ``portable`` alone. The order is that of the levels in abi.cpp.
 """
 
 FLAGS = (
