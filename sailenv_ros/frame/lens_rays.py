@@ -21,9 +21,10 @@ from sailenv_ros.types.camera import CameraIntrinsics
 __all__ = [
     "bent_lenses",
     "depth_shares",
+    "fine_sample_places",
     "ranges_of_depths",
     "ray_lengths",
-    "rays_of_half_pixels",
+    "rays_of_fine_samples",
     "reach_lines",
     "reach_of",
     "reach_of_points",
@@ -33,9 +34,12 @@ __all__ = [
     "unit_rays",
 ]
 
-_SIX = np.array([3.0, -25.0, 150.0, 150.0, -25.0, 3.0]) / 256.0
-_SIX_LESS_FOUR = _SIX - np.array([0.0, -1.0, 9.0, 9.0, -1.0, 0.0]) / 16.0
-"""Weights of Lagrange's polynomial in the middle of its nodes."""
+SAMPLE_SHIFT_PX = 0.25
+"""By how much the native renderer's fine samples in even rows and columns lie beside a grid; as in
+``native/src/kernels/raster.h``, which says why [px]."""
+
+_NODES = np.arange(-2.0, 4.0)
+"""Of Lagrange's polynomials, around a place between 0 and 1; the middle four for those of four."""
 
 _LEAST_SURE = 1e-7
 """By how much the polynomials may differ: 1e-4 px at a focal length of 1000 px."""
@@ -115,41 +119,75 @@ def ray_lengths(lens: CameraIntrinsics) -> NDArray[np.float64]:
     return lengths
 
 
-def rays_of_half_pixels(lens: CameraIntrinsics) -> NDArray[np.float64]:
-    """Return (2 H + 1, 2 W + 1, 3) float64: where samples half a pixel apart look; a new array.
+def fine_sample_places(lens: CameraIntrinsics) -> NDArray[np.float64]:
+    """Return (2 H + 1, 2 W + 1, 2) float64: where fine samples lie in the picture [px].
+
+    Half a pixel apart, those of odd numbers in the pixels' centres; but those in even rows lie
+    `SAMPLE_SHIFT_PX` to the right of that, those in even columns below.
+    """
+    rows, columns = np.indices((2 * lens.height + 1, 2 * lens.width + 1))
+    x = 0.5 * (columns - 1) + SAMPLE_SHIFT_PX * (rows % 2 == 0)
+    y = 0.5 * (rows - 1) + SAMPLE_SHIFT_PX * (columns % 2 == 0)
+    return np.stack([x, y], axis=-1)
+
+
+def rays_of_fine_samples(lens: CameraIntrinsics) -> NDArray[np.float64]:
+    """Return (2 H + 1, 2 W + 1, 3) float64: where fine samples look; a new array.
 
     Those of odd numbers are the pixels' centres. The others lie between the rays of six pixels in a
     line, by the polynomial through these; where one through four is not as good, or the lens does
     not see all of them, the lens is asked. nan where it sees nothing.
     """
-    height, width, side = lens.height, lens.width, len(_SIX) // 2
+    height, width, side = lens.height, lens.width, len(_NODES) // 2
     around = np.empty((height + 2 * side, width + 2 * side, 3))
     around[side:-side, side:-side] = unit_rays(lens)
     rows, columns = np.indices(around.shape[:2]) - side
     ring = (rows < 0) | (rows >= height) | (columns < 0) | (columns >= width)
     around[ring] = lens.unit_rays_through(np.stack([columns[ring], rows[ring]], axis=-1))
-    wide = np.empty((height + 2 * side, 2 * width + 1, 3))
-    wide[:, 1::2] = around[:, side:-side]
-    wide[:, ::2], sure = _between(around, 1)
     rays = np.empty((2 * height + 1, 2 * width + 1, 3))
     known = np.ones(rays.shape[:2], np.bool_)
-    rays[1::2], known[1::2, ::2] = wide[side:-side], sure[side:-side]
-    rays[::2], known[::2] = _between(wide, 0)
-    places = np.argwhere(~known)
-    rays[~known] = lens.unit_rays_through(0.5 * (places[:, ::-1] - 1))
+    rays[1::2, 1::2] = around[side:-side, side:-side]
+    half, shift = 0.5, SAMPLE_SHIFT_PX
+    for row, column, down, across in (
+        (1, 0, shift, half),
+        (0, 1, half, shift),
+        (0, 0, half + shift, half + shift),
+    ):
+        # The first places lie behind what stands before the first pixels.
+        wide, sure_across = (found[:, column:] for found in _between(around, 1, across))
+        found, sure = _between(wide, 0, down)
+        for first in range(len(_NODES)):
+            sure &= sure_across[first : first + len(sure)]
+        rays[row::2, column::2], known[row::2, column::2] = found[row:], sure[row:]
+    rays[~known] = lens.unit_rays_through(fine_sample_places(lens)[~known])
     return rays
 
 
-def _between(rays: NDArray[np.float64], axis: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Return rays in the middle between neighbours along an axis, and which are good enough."""
-    count = rays.shape[axis] - len(_SIX) + 1
-    parts = [rays[(slice(None),) * axis + (slice(k, k + count),)] for k in range(len(_SIX))]
-    six = sum(weight * part for weight, part in zip(_SIX, parts, strict=True))
-    off = sum(weight * part for weight, part in zip(_SIX_LESS_FOUR, parts, strict=True))
-    return np.asarray(six), (np.abs(off) <= _LEAST_SURE).all(axis=-1)
+def _between(
+    rays: NDArray[np.float64], axis: int, share: float
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return rays at a share of the way to the next neighbour along an axis, and which are good.
+
+    Of N neighbours in a line there are N - 5 places: from between the third and the fourth on.
+    """
+    six, four = _lagrange(_NODES, share), np.zeros(len(_NODES))
+    four[1:-1] = _lagrange(_NODES[1:-1], share)
+    count = rays.shape[axis] - len(_NODES) + 1
+    parts = [rays[(slice(None),) * axis + (slice(k, k + count),)] for k in range(len(_NODES))]
+    found = sum(weight * part for weight, part in zip(six, parts, strict=True))
+    off = sum(weight * part for weight, part in zip(six - four, parts, strict=True))
+    return np.asarray(found), (np.abs(off) <= _LEAST_SURE).all(axis=-1)
 
 
-@cached_for_scenes(8)
+def _lagrange(nodes: NDArray[np.float64], place: float) -> NDArray[np.float64]:
+    """Return the weights of nodes in Lagrange's polynomial at a place."""
+    apart = nodes[:, None] - nodes
+    np.fill_diagonal(apart, 1.0)
+    to_place = np.broadcast_to(place - nodes, apart.shape).copy()
+    np.fill_diagonal(to_place, 1.0)
+    return np.asarray((to_place / apart).prod(axis=1))
+
+
 def depth_shares(lens: CameraIntrinsics) -> NDArray[np.float32]:
     """Return (H, W) float32 read-only: depth along the axis over distance along the ray."""
     shares = unit_rays(lens)[..., 2].astype(np.float32)

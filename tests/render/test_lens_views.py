@@ -13,7 +13,12 @@ import cv2
 import numpy as np
 import pytest
 
-from sailenv_ros.frame.lens_rays import depth_shares, rays_of_half_pixels, unit_rays
+from sailenv_ros.frame.lens_rays import (
+    depth_shares,
+    fine_sample_places,
+    rays_of_fine_samples,
+    unit_rays,
+)
 from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.amodal_renderer import AmodalRenderer
 from sailenv_ros.render.cpu.renderer import NativeRenderer
@@ -109,9 +114,8 @@ def camera_through(name: str, pose: Pose = FORWARD, **more: Any) -> Camera:
 def test_rays_between_pixels_are_those_of_the_lens(name: str) -> None:
     """To 1e-4 px beside what the law says there; those of pixels' centres are the same bytes."""
     lens = camera_through(name).intrinsics
-    rays = rays_of_half_pixels(lens)
-    u, v = (0.5 * (np.arange(2 * size + 1) - 1) for size in (WIDTH, HEIGHT))
-    exact = lens.unit_rays_through(np.stack(np.meshgrid(u, v), axis=-1))
+    rays = rays_of_fine_samples(lens)
+    exact = lens.unit_rays_through(fine_sample_places(lens))
     np.testing.assert_array_equal(rays[1::2, 1::2], unit_rays(lens))
     there = np.isfinite(exact[..., 2])
     np.testing.assert_array_equal(np.isfinite(rays[..., 2]), there)

@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.frame.lens_rays import rays_of_half_pixels, unit_rays
+from sailenv_ros.frame.lens_rays import rays_of_fine_samples, unit_rays
 from sailenv_ros.native.lens_tables import (
     BLOCK_CELLS,
     CUBE_FACE,
@@ -75,7 +75,7 @@ _latest = _LatestTables()
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LensSamples:
-    """Table of a lens for some samples: pixels' centres, or samples half a pixel apart.
+    """Table of a lens for some samples: pixels' centres, or the fine samples of smooth edges.
 
     Attributes
     ----------
@@ -114,10 +114,10 @@ def lens_samples(lens: CameraIntrinsics, fine: bool = False) -> LensSamples:
     ----------
     lens : CameraIntrinsics
     fine : bool
-        Of samples half a pixel apart; those of odd numbers are the pixels' centres.
+        Of fine samples, see `fine_sample_places`.
     """
     pixels = None if not fine else lens_samples(lens)
-    rays = unit_rays(lens) if pixels is None else rays_of_half_pixels(lens)
+    rays = unit_rays(lens) if pixels is None else rays_of_fine_samples(lens)
     alone = _sees_ahead_alone(unit_rays(lens))
     rows, columns = rays.shape[:2]
     stride = -(-(columns + ROW_PADDING) // ROW_STEP) * ROW_STEP

@@ -1,7 +1,8 @@
 """Samples half a pixel apart, of which pictures with smooth edges are made.
 
 They are the pixels of `Camera.of_half_pixels`; those of odd numbers are the centres of the camera's
-own. The native renderer has the same samples, see `native/src/kernels/edges.cpp`.
+own. OpenGL smooths edges by them, and both renderers the borders of mirrors; for the edges of the
+native renderer see `native/src/kernels/edges.cpp`.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-// Edges of surfaces: visibility is known at nine samples of each pixel, light is worked out once
-// for each surface that they see.
+// Edges of surfaces: visibility is known at six samples of each pixel, light is worked out once for
+// each surface that they see.
 //
-// The samples lie half a pixel apart, on the pixel's sides and corners and in its middle. Their
-// weights are those of the trapezoid rule over the pixel's square: 4 for the middle, 2 on sides, 1
-// in corners, of 16. Samples that see one smooth surface share their light.
+// Two samples lie in the pixel's square and count a quarter: its middle, and one above and to the
+// left. Four lie on its sides and count an eighth, as they are of the pixels beside, too. See
+// SAMPLE_SHIFT. Samples that see one smooth surface share their light.
 #include "edges.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace sailenv {
 namespace {
 
-constexpr int32_t SAMPLES = 9;
+constexpr int32_t SAMPLES = 6;
 constexpr float LEAST_COSINE = 0.9f;         // between normals within one smooth surface
 constexpr float SAME_INVERSE_DEPTH = 0.01f;  // as a share, within one smooth surface
 // By how much samples half a pixel to both sides may lie off the plane through the middle, as a
@@ -24,26 +24,32 @@ constexpr float LEAST_BEND = 0.03f;
 // surface differ by at most so many of these: as at a focal length of 500 px.
 constexpr float SAME_DEPTH_PX = 5.0f;
 constexpr float LEAST_HEIGHT_PX = 2.0f;  // of a triangle over the edge that ends a surface
-constexpr float WEIGHT = 1.0f / 16.0f;
 
-// Middle, sides, corners: column, row, weight.
+// Column, row, weight; and where they are from the middle of the pixel [pixels].
 struct Sample {
     int32_t column, row;
     float weight;
-};
-constexpr Sample PATTERN[SAMPLES] = {{1, 1, 4}, {1, 0, 2}, {0, 1, 2}, {2, 1, 2}, {1, 2, 2},
-                                     {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {2, 2, 1}};
 
-// The samples around the middle: where they are from it [pixels], and a bit for each.
+    constexpr float x() const {
+        return 0.5f * static_cast<float>(column - 1) + (row % 2 == 0 ? SAMPLE_SHIFT : 0.0f);
+    }
+    constexpr float y() const {
+        return 0.5f * static_cast<float>(row - 1) + (column % 2 == 0 ? SAMPLE_SHIFT : 0.0f);
+    }
+};
+constexpr Sample PATTERN[SAMPLES] = {{1, 1, 0.25f},  {1, 0, 0.125f}, {0, 1, 0.125f},
+                                     {2, 1, 0.125f}, {1, 2, 0.125f}, {0, 0, 0.25f}};
+
+// The samples around the middle: where they are from it [pixels], and a bit for each; then none.
 struct SamplesAround {
-    alignas(32) float x[SAMPLES - 1], y[SAMPLES - 1];
-    alignas(32) int32_t bit[SAMPLES - 1];
+    alignas(32) float x[8], y[8];
+    alignas(32) int32_t bit[8];
 };
 constexpr SamplesAround samples_around() {
     SamplesAround found{};
     for (int32_t k = 1; k < SAMPLES; k++) {
-        found.x[k - 1] = 0.5f * static_cast<float>(PATTERN[k].column - 1);
-        found.y[k - 1] = 0.5f * static_cast<float>(PATTERN[k].row - 1);
+        found.x[k - 1] = PATTERN[k].x();
+        found.y[k - 1] = PATTERN[k].y();
         found.bit[k - 1] = 1 << k;
     }
     return found;
@@ -93,13 +99,9 @@ struct Seen {
 // What a sample of a pixel sees, with no weight yet; x is not a number where the lens sees nothing.
 LANES_INLINE Seen seen_at(const Shading& s, uint32_t tag, int32_t x, int32_t y,
                           const Sample& sample) {
-    Seen own = {tag,
-                0,
-                static_cast<float>(x) + 0.5f * static_cast<float>(sample.column - 1),
-                static_cast<float>(y) + 0.5f * static_cast<float>(sample.row - 1),
-                0.0f,
-                nullptr,
-                {}};
+    Seen own = {
+        tag,     0, static_cast<float>(x) + sample.x(), static_cast<float>(y) + sample.y(), 0.0f,
+        nullptr, {}};
     if (s.table != nullptr) {
         const LensTable& lens = *s.fine_table;
         const int64_t at = (2 * y + sample.row) * lens.stride + 2 * x + sample.column;
@@ -264,7 +266,7 @@ void list_fragments(const Shading& s, const EdgeScratch& scratch, const uint32_t
                 last_surface = k;
             }
         }
-        seen[k].weight += sample.weight * WEIGHT;
+        seen[k].weight += sample.weight;
         surface[number] = k;
     }
     if (count == 2) {
@@ -291,7 +293,7 @@ bool list_pair(const Shading& s, uint32_t tag, uint32_t other, SecondSeen second
     if (weight < 0.0f) {
         weight = 0.0f;
         for (; second != 0; second &= second - 1) {
-            weight += PATTERN[__builtin_ctz(second)].weight * WEIGHT;
+            weight += PATTERN[__builtin_ctz(second)].weight;
         }
     }
     out.push_back({beside.x, beside.y, weight, other, x, y, beside.face});
@@ -308,12 +310,15 @@ LANES_INLINE i8 bent(const Shading& s, const float* corner, int64_t stride, int3
         const LensSteps steps = steps_at(*s.table, y, x);
         least = least * sqrt8(steps.x_right * steps.x_right + steps.y_right * steps.y_right);
     }
-    i8 found{};
-    for (const int64_t step : {int64_t{1}, stride - 1, stride, stride + 1}) {
-        const f8 both = every_second(middle - step) + every_second(middle + step);
-        found |= abs8(both - (own + own)) > least;
-    }
-    return found;
+    const f8 left = every_second(middle - 1), right = every_second(middle + 1),
+             top = every_second(middle - stride), bottom = every_second(middle + stride),
+             inner = every_second(corner);
+    // Over a plane samples differ by where they lie from the middle.
+    constexpr float TWICE = 2.0f * SAMPLE_SHIFT;
+    const f8 across = right - left, down = bottom - top;
+    return (abs8(left + right - (own + own) - TWICE * down) > least) |
+           (abs8(top + bottom - (own + own) - TWICE * across) > least) |
+           (abs8(2.0f * (inner - own) + (1.0f - TWICE) * (across + down)) > least);
 }
 
 // Tells if a pixel's samples see triangles of one part. `fine` begins at its first sample.

@@ -353,8 +353,10 @@ void set_lens_bounds(ClusterRows& r, int32_t count, const Projection& p, const C
         // A place lies off the plane through the corners' places by at most a third of the square
         // of the longest side, and these by an eighth.
         const f8 off = bend * (0.4f * cells * cells + 0.15f) + 0.01f;
-        const f8 left = min8(a.u, min8(b.u, c.u)) - off, right = max8(a.u, max8(b.u, c.u)) + off,
-                 top = min8(a.v, min8(b.v, c.v)) - off, bottom = max8(a.v, max8(b.v, c.v)) + off;
+        // Shifted samples lie behind what their numbers tell.
+        const f8 before = off + (p.fine ? 2.0f * SAMPLE_SHIFT : 0.0f);
+        const f8 left = min8(a.u, min8(b.u, c.u)) - before, right = max8(a.u, max8(b.u, c.u)) + off,
+                 top = min8(a.v, min8(b.v, c.v)) - before, bottom = max8(a.v, max8(b.v, c.v)) + off;
         const auto within = [](int32_t first, int32_t other) {
             return static_cast<float>(std::max(first, other));
         };

@@ -209,6 +209,21 @@ void set_edges_up(ClusterRows& r, int32_t count, const Projection& p) {
     }
 }
 
+// Which of eight intervals hold a number that is `first` and some times 2.
+LANES_INLINE i8 hold(f8 low, f8 high, float first) {
+    // Upwards is the negative floor of the negative.
+    return -floor8((first - low) * 0.5f) <= floor8((high - first) * 0.5f);
+}
+
+// Which of eight rectangles [samples] hold a fine sample: each of odd or even rows and columns.
+LANES_INLINE i8 hold_fine_sample(f8 x0, f8 x1, f8 y0, f8 y1) {
+    constexpr float SHIFT = 2.0f * SAMPLE_SHIFT;
+    return (hold(x0, x1, 1.0f) & hold(y0, y1, 1.0f)) |
+           (hold(x0, x1, 0.0f) & hold(y0, y1, 1.0f + SHIFT)) |
+           (hold(x0, x1, 1.0f + SHIFT) & hold(y0, y1, 0.0f)) |
+           (hold(x0, x1, SHIFT) & hold(y0, y1, SHIFT));
+}
+
 // Which samples a triangle can reach: their bounds; x0 > x1 if there are none.
 template <Drawn DRAWN>
 void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
@@ -243,6 +258,11 @@ void set_bounds(ClusterRows& r, int32_t count, const Projection& p) {
             y1 = crosses ? splat(bottom) : y1;
         } else if (DRAWN == Drawn::PARALLEL) {
             behind = max8(depth[0], max8(depth[1], depth[2])) <= 0.0f;
+        }
+        if (p.fine) {
+            behind |= ~hold_fine_sample(x0, x1, y0, y1);
+            x0 = x0 - 2.0f * SAMPLE_SHIFT;
+            y0 = y0 - 2.0f * SAMPLE_SHIFT;
         }
         // Rounded inwards to samples: upwards is the negative floor of the negative.
         x0 = -floor8(-clamp8(x0, left, 1e5f));
@@ -393,9 +413,12 @@ void put_into_band(Segment& segment, int32_t band) {
               static_cast<uint32_t>(segment.first_triangle));
 }
 
-// Where a row of a wide triangle begins and ends, give or take a sample.
+// Where a row of a wide triangle begins and ends, give or take a sample. `down` is the edge's slope
+// from row to row: some fine samples lie below their row.
 template <bool FINE>
-LANES_INLINE bool narrow(float slope, float offset, float inverse, float& low, float& high) {
+LANES_INLINE bool narrow(float slope, float down, float offset, float inverse, float& low,
+                         float& high) {
+    if (FINE) offset += larger(SAMPLE_SHIFT * down, 0.0f);
     const float pixel = offset * inverse, at = FINE ? 2.0f * pixel + 1.0f : pixel;
     if (slope > 0.0f) {
         low = larger(at - 1.0f, low);
@@ -436,27 +459,39 @@ void draw_triangle(const Triangle& t, uint32_t number, const Part& part, const P
         int32_t first = t.x0, last = t.x1;
         if (wide) {
             float low = static_cast<float>(first), high = static_cast<float>(last);
-            if (!narrow<FINE>(a0, c0, inverse0, low, high) ||
-                !narrow<FINE>(a1, c1, inverse1, low, high) ||
-                !narrow<FINE>(a2, c2, inverse2, low, high) || !(low <= high)) {
+            if (!narrow<FINE>(a0, t.edge[1], c0, inverse0, low, high) ||
+                !narrow<FINE>(a1, t.edge[4], c1, inverse1, low, high) ||
+                !narrow<FINE>(a2, t.edge[7], c2, inverse2, low, high) || !(low <= high)) {
                 continue;
             }
             first = static_cast<int32_t>(low);
             last = static_cast<int32_t>(high);
         }
+        // Where samples lie from the row and from their columns. A row of fine ones begins with an
+        // even column.
+        f8 down{};
+        float across = 0.0f;
+        if (FINE) {
+            constexpr float S = SAMPLE_SHIFT;
+            first &= ~1;
+            down = f8{S, 0.0f, S, 0.0f, S, 0.0f, S, 0.0f};
+            across = (row & 1) != 0 ? 0.0f : S;
+        }
+        const f8 r0 = t.edge[1] * down + c0, r1 = t.edge[4] * down + c1, r2 = t.edge[7] * down + c2,
+                 rn = t.inverse_depth[1] * share * down + cn;
         float* near_row = inverse_depth + row * stride;
         int32_t* seen_row =
             visible == nullptr ? nullptr : reinterpret_cast<int32_t*>(visible + row * stride);
         for (int32_t x = first; x <= last; x += 8) {
-            const f8 at = FINE ? 0.5f * (counting() + static_cast<float>(x - 1))
+            const f8 at = FINE ? 0.5f * (counting() + static_cast<float>(x - 1)) + across
                                : counting() + static_cast<float>(x);
-            const f8 e0 = a0 * at + c0, e1 = a1 * at + c1, e2 = a2 * at + c2, n = an * at + cn;
+            const f8 e0 = a0 * at + r0, e1 = a1 * at + r1, e2 = a2 * at + r2, n = an * at + rn;
             const f8 before = load(near_row + x);
             i8 drawn = (e0 >= least0) & (e1 >= least1) & (e2 >= least2) & (n > before) &
                        (n <= p.greatest_inverse_depth);
             if (MASKED) {
                 if (!any(drawn)) continue;
-                drawn = opaque_pixels(masked, part, at, y, PixelSteps{}, n, drawn);
+                drawn = opaque_pixels(masked, part, at, y + down, PixelSteps{}, n, drawn);
             }
             store(near_row + x, drawn ? n : before);
             if (seen_row != nullptr) {

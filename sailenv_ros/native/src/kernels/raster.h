@@ -42,6 +42,11 @@ LANES_INLINE float least_inside(const float* edge) {
     return own ? 0.0f : 1.1754944e-38f;
 }
 
+// Fine samples of even rows lie so far beside their columns, those of even columns so far below
+// their rows [pixels]: so a pixel has them in four rows and four columns, which are a quarter of it
+// apart, and narrow things along an axis are not broken into dashes.
+constexpr float SAMPLE_SHIFT = 0.25f;
+
 // How much of a triangle's nearness counts where surfaces lie in one another: of two sheets back to
 // back the one that faces the eye is seen, as by rays (`meet_shape`). A few bits more than
 // rounding.
@@ -71,7 +76,8 @@ struct Projection {
     int32_t width, height;   // pixels
     int32_t x0, y0, x1, y1;  // first and last samples that are drawn; may lie beside the picture
     // Samples are the centres of pixels. Fine ones are half a pixel apart: sample k lies at pixel
-    // (k - 1) / 2, so there are 2 n + 1 to n pixels, and those of odd numbers are centres.
+    // (k - 1) / 2, so there are 2 n + 1 to n pixels, and those of odd numbers are centres. Others
+    // are shifted, see SAMPLE_SHIFT.
     bool fine;
     bool listed;                // parts hold what may be seen alone, and one band is drawn
     float least_inverse_depth;  // what is not nearer is not drawn
