@@ -154,10 +154,10 @@ def rays_of_fine_samples(lens: CameraIntrinsics) -> NDArray[np.float64]:
         (0, 0, half + shift, half + shift),
     ):
         # The first places lie behind what stands before the first pixels.
-        wide, sure_across = (found[:, column:] for found in _between(around, 1, across))
-        found, sure = _between(wide, 0, down)
+        wide, sure_across = _between(around, 1, across)
+        found, sure = _between(wide[:, column:], 0, down)
         for first in range(len(_NODES)):
-            sure &= sure_across[first : first + len(sure)]
+            sure &= sure_across[first : first + len(sure), column:]
         rays[row::2, column::2], known[row::2, column::2] = found[row:], sure[row:]
     rays[~known] = lens.unit_rays_through(fine_sample_places(lens)[~known])
     return rays

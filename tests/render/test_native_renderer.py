@@ -341,7 +341,10 @@ LAMPS = {
 def test_pictures_are_those_of_opengl(
     kind: str, lamp: str, pair: tuple[NativeRenderer, Renderer]
 ) -> None:
-    """Within 2 of 255 at 95 % of the pixels and more, for every material under every light."""
+    """Within 2 of 255 at 95 % of the pixels and more, for every material under every light.
+
+    At pixels' centres: samples of smooth edges lie elsewhere.
+    """
     things = [
         Thing(
             model_of(box_mesh(0.9), **KINDS[kind]), Pose.from_rpy_deg((3.0, 0.1, 0), (10, 20, 30))
@@ -354,6 +357,7 @@ def test_pictures_are_those_of_opengl(
     contents = contents_of(things, lights=lights, environment=Environment(sky_share=0.5))
     snapshot = snapshot_of(things, contents=contents)
     camera = camera_at(look_at((0, 0, 0.6), (3.2, 0, -0.2)), width=200, height=150)
+    camera = replace(camera, picture=PictureSettings(smooth_edges=False))
     first, second = (
         made.render(RenderRequest(snapshot, camera, ["rgb", "instance"])).views for made in pair
     )
