@@ -10,11 +10,16 @@ from sailenv_content.families.hollow import Box
 from sailenv_content.families.lathe import vessel
 from sailenv_content.families.materials import fabric, metal
 from sailenv_content.families.parameters import Values
-from sailenv_content.families.shaping import cushion, extruded, placed
+from sailenv_content.families.shaping import cushion, placed
+from sailenv_content.procedural.forms import loft
+from sailenv_ros.assets.meshes import RawMesh, smooth_mesh
+from sailenv_ros.types.model import Mesh
 
 __all__ = ["STEEL", "drum", "front_with_hole"]
 
 STEEL = metal("steel", 1500.0)
+
+BEVEL_M = 0.002
 
 
 def _ring_of_boxes(b: PieceBuilder, radius: float, length: float, x: float, z: float) -> None:
@@ -29,35 +34,46 @@ def _ring_of_boxes(b: PieceBuilder, radius: float, length: float, x: float, z: f
 
 
 def front_with_hole(b: PieceBuilder, v: Values, panel: Box, radius: float, z: float) -> None:
-    """Add a front around a round opening: a frame, and corners to a circle."""
+    """Add a front around a round opening: one sheet, so that no seams are seen."""
     size, mid = panel.size, panel.middle
     half = radius + 0.012
-    rest = (size[1] / 2 - half, half)
+    wide = size[1] / 2 - half
     for sign in (-1.0, 1.0):
-        at = (mid[0], sign * (half + rest[0] / 2), mid[2])
-        b.box(v.body, (size[0], rest[0], size[2]), at, bevel=0.002)
+        b.collide((size[0], wide, size[2]), (mid[0], sign * (half + wide / 2), mid[2]))
     for low, high in ((panel.low[2], z - half), (z + half, panel.high[2])):
-        b.box(v.body, (size[0], 2 * half, high - low), (mid[0], 0.0, (low + high) / 2), bevel=0.002)
-    # A square with a round hole: each corner between an arc and its two sides.
-    for quarter in range(4):
-        turns = np.linspace(0.0, np.pi / 2, 11) + quarter * np.pi / 2
-        arc = radius * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
-        ends = half * np.stack([np.cos(turns[[0, -1]]), np.sin(turns[[0, -1]])], axis=-1)
-        corner = ends.sum(axis=0)
-        for k in range(10):
-            along = np.array([ends[0], ends[0] + (corner - ends[0]), ends[1]])
-            first, last = (_square_point(along, (k + s) / 10) for s in (0, 1))
-            wedge = np.array([arc[k], first, last, arc[k + 1]])
-            mesh = extruded(wedge, size[0], bevel=0.0003)
-            # Its x and y become y and z.
-            mesh = placed(placed(mesh, turn_deg=(90.0, 0.0, 0.0)), turn_deg=(0.0, 0.0, 90.0))
-            b.form(v.body, mesh, (panel.low[0], 0.0, z), collides="none")
+        b.collide((size[0], 2 * half, high - low), (mid[0], 0.0, (low + high) / 2))
+    corners = np.array([panel.low, panel.high])[:, 1:] - (0.0, z)
+    mesh = _sheet_with_hole(corners, radius, float(size[0]))
+    # Its x and y become y and z.
+    mesh = placed(placed(mesh, turn_deg=(90.0, 0.0, 0.0)), turn_deg=(0.0, 0.0, 90.0))
+    b.form(v.body, mesh, (panel.low[0], 0.0, z), collides="none")
 
 
-def _square_point(corners: np.ndarray, share: float) -> np.ndarray:
-    first = min(int(2 * share), 1)
-    rest = 2 * share - first
-    return np.asarray(corners[first] * (1 - rest) + corners[first + 1] * rest)
+def _sheet_with_hole(corners: np.ndarray, radius: float, thickness: float) -> Mesh:
+    """Return a rectangle in x and y, from the lowest to the highest corner, around a circle."""
+    around = corners[[0, 1, 1, 0], 0], corners[[0, 0, 1, 1], 1]
+    # None of them is that of a corner.
+    even = np.linspace(-np.pi, np.pi, 40, endpoint=False) + 0.0123
+    turns = np.sort(np.concatenate([even, np.arctan2(*around[::-1])]))
+    out = np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+
+    def rectangle(inset: float) -> np.ndarray:
+        reach = np.where(out < 0.0, corners[0] + inset, corners[1] - inset)
+        nearest = np.abs(reach) / np.maximum(np.abs(out), 1e-9)
+        return np.asarray(out * nearest.min(axis=1, keepdims=True))
+
+    rows = [
+        (rectangle(0.0), 0.0),
+        (rectangle(0.0), thickness - BEVEL_M),
+        (rectangle(BEVEL_M), thickness),
+        (out * (radius + BEVEL_M), thickness),
+        (out * radius, thickness - BEVEL_M),
+        (out * radius, 0.0),
+    ]
+    rings = np.array([np.column_stack([flat, np.full(len(flat), up)]) for flat, up in rows])
+    raw = loft(np.concatenate([rings, rings[:1]]), caps=False)
+    uvs = raw.positions[:, :2] + raw.positions[:, 2:]
+    return smooth_mesh(RawMesh(positions=raw.positions, uvs=uvs, triangles=raw.triangles), 30.0)
 
 
 def drum(b: PieceBuilder, v: Values, front: float, depth: float, radius: float, z: float) -> None:

@@ -147,6 +147,7 @@ class _Bake:
         mirrors = mirror_shares(geometry, {d.instance.id: d.instance.category for d in drawn})
         lit = close_to_lamps(contents.lights, texels, albedo)
         emitters = emitters_of(geometry, texels, (emission, *glows.values(), *lit))
+        self._glows = np.logical_or.reduce([one.any(axis=1) for one in (emission, *glows.values())])
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,
@@ -298,8 +299,12 @@ class _Bake:
         )
 
     def _seen(self, solver: Solver, of_texel: NDArray[np.int32] | None) -> NDArray[np.float16]:
-        """Return (K, L, 3): the radiance that eyes see."""
+        """Return (K, L, 3): the radiance that eyes see, but of shades, bulbs and screens.
+
+        An exposure for what these light lets them be white.
+        """
         texels = self._views.level(self._spots, self._visibility.useful)
+        texels = texels[~self._glows[texels]]
         seen = solver.radiance[texels if of_texel is None else of_texel[texels]]
         return seen.reshape(len(texels), len(solver.lights), 3).astype(np.float16)
 

@@ -161,7 +161,7 @@ class ObjectLighting:
             own, _ = ray_instances([alone])
         bounced, direct, weights = self._gathered(world, own, positions, normals, quality)
         axes = thing.world_from_body[:3, :3].T
-        fit = _fit(positions, normals, weights, axes)
+        fit = _fit(positions, normals, _counted(weights, normals, axes), axes)
         by_layer = (fit @ bounced).reshape(LIGHT_TERMS, self._layers, 3).transpose(1, 0, 2)
         return ObjectLight(
             bounced=np.ascontiguousarray(by_layer, np.float32),
@@ -264,6 +264,23 @@ def _surface_points(model: Model, count: int) -> tuple[Doubles, Doubles]:
     turned = np.einsum("pc,pcx->px", weights, normals[triangle])
     turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-12)
     return points, turned
+
+
+def _counted(weights: Doubles, normals: Floats, axes: Doubles) -> Doubles:
+    """Return (P,) weights in which each side's least hidden point counts fully.
+
+    A side that is hidden altogether, as that of a door beside another one, is as dark as it is:
+    else what the other sides have would be taken for it.
+    """
+    along = normals.astype(np.float64) @ axes.T
+    axis = np.abs(along).argmax(axis=1)
+    side = axis + 3 * (along[np.arange(len(axis)), axis] < 0.0)
+    most = np.zeros(6)
+    np.maximum.at(most, side, weights)
+    # Of sides within something nothing is known.
+    most[most < LEAST_WEIGHT] = 1.0
+    counted: Doubles = weights / most[side]
+    return counted
 
 
 def _fit(positions: Floats, normals: Floats, weights: Doubles, axes: Doubles) -> Doubles:

@@ -24,10 +24,12 @@ from sailenv_ros.render.picture.auto_exposure import (
 )
 from sailenv_ros.simulation.room_exposure import room_exposure
 from sailenv_ros.simulation.scenes import SceneLibrary
+from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
 from tests.support import baked as by_hand
-from tests.support.bake_scenes import COARSE
+from tests.support.bake_scenes import COARSE, DARK, hollow, still
 from tests.support.lockstep_core import lockstep_core
+from tests.support.tiny_scenes import Thing, box_mesh, model_of
 
 ROOM = """
 version: 1
@@ -104,6 +106,16 @@ def test_what_eyes_see_is_kept_with_the_light(cell: Path) -> None:
     assert np.isfinite(baked.seen).all()
     lit = baked.seen[:, 1].astype(float)
     assert 0.0 < np.median(lit) < baked.layers[1].direct.max()
+
+
+def test_lamps_may_be_white() -> None:
+    """A glowing globe before the eye is no highlight: the room is as bright as what it lights."""
+    grey_room = Thing(hollow((4.0, 4.0, 2.5), base_colour=(0.5, 0.5, 0.5, 1.0), roughness=1.0))
+    look = {"base_colour": (0.0, 0.0, 0.0, 1.0), "roughness": 1.0, "emission": (50.0,) * 3}
+    globe = Thing(model_of(box_mesh(0.7), **look), Pose((0.0, 0.0, 0.4)))
+    baked = bake(still([grey_room, globe], environment=DARK), settings=COARSE)
+    assert len(baked.seen) > 1000
+    assert 1.0 < baked.seen.max() < 25.0
 
 
 def test_only_baked_rooms_that_name_no_exposure_are_metered(cell: Path) -> None:
