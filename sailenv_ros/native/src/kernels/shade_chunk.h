@@ -32,6 +32,8 @@ struct Chunk {
     bool parallel;                         // changes of uv are not over depth, below
     alignas(32) float depth[CHUNK];
     Vectors normal;  // world frame
+    // How much unit normals change from pixel to pixel; 0 of what is not smooth.
+    alignas(32) float bend[CHUNK];
     // light_u is 0 of what has no light map: then light_v is the share that it hides of itself.
     alignas(32) float u[CHUNK], v[CHUNK], light_u[CHUNK], light_v[CHUNK];
     // Changes of uv / depth and of 1 / depth from pixel to pixel; of uv and of -depth where rays

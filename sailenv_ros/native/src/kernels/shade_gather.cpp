@@ -14,6 +14,7 @@ struct RowPlanes {
     float inverse_depth_slope, inverse_depth_offset;
     int32_t id;
     bool coloured, detailed;
+    float bend;  // see `Chunk`
 };
 
 // The same of a face, through a lens that bends lines: `offset` and the like are at y = 0.
@@ -46,8 +47,18 @@ LANES_INLINE f8 attribute_at(const FacePlanes& r, int k, f8 x, f8 y) {
 constexpr f8 NOTHING_THERE = {1, 0, 0, 0, 0, 0, 0, 1}, PLAIN = {0, 0, 0, 0, 1, 0, 0, 0},
              NO_MAPS = {0, 0, 0, 0, NO_MAP, 0, 0, 0};
 
-// Sets planes up at a row; `down`, if it is asked for, is how they change from row to row.
-LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float y, RowPlanes& r, f8* down) {
+// How much unit normals change from pixel to pixel, at the place of `normal` and beside it.
+float bend_of(f8 normal, f8 right, f8 down) {
+    const auto unit_of = [](f8 n) { return unit(vec3(n[0], n[1], n[2])); };
+    const vec3 here = unit_of(normal);
+    const vec3 across = unit_of(normal + right) - here, along = unit_of(normal + down) - here;
+    return sqrt(max(dot(across, across), dot(along, along)));
+}
+
+// Sets planes up at a row; `down`, if it is asked for, is how they change from row to row. `x` is a
+// place in the row.
+LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float x, float y, RowPlanes& r,
+                             f8* down) {
     const Part& part = s.parts->parts[t.part];
     const InstanceFrame& frame = s.frames[part.instance];
     const float* vertex = part.vertices;
@@ -69,15 +80,21 @@ LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float y, RowPl
              n1 = load(frame.normal_columns[1]) * turned,
              n2 = load(frame.normal_columns[2]) * turned;
     r.slope = object_x * kept + n0 * object_x[0] + n1 * object_x[1] + n2 * object_x[2];
-    if (down != nullptr) {
+    constexpr i8 NORMAL = {-1, -1, -1, 0, 0, 0, 0, 0};
+    const bool bends = part.roughness < ROUGH && s.light != nullptr && s.light->reflecting &&
+                       any(((a0 != a1) | (a0 != a2)) & NORMAL);
+    f8 downwards{};
+    if (down != nullptr || bends) {
         const f8 object_y = a0 * (t.edge[1] * q) + a1 * (t.edge[4] * q) + a2 * (t.edge[7] * q);
-        *down = object_y * kept + n0 * object_y[0] + n1 * object_y[1] + n2 * object_y[2];
+        downwards = object_y * kept + n0 * object_y[0] + n1 * object_y[1] + n2 * object_y[2];
+        if (down != nullptr) *down = downwards;
     }
     const bool parallel = s.sight == Sight::PARALLEL;
     const float inverse_depth_0 = t.inverse_depth[1] * y + t.inverse_depth[2];
     const f8 depth_lane = {0, 0, 0, 0, 0, 0, 0, parallel ? -inverse_depth_0 : 1.0f};
     r.offset =
         object_0 * kept + n0 * object_0[0] + n1 * object_0[1] + n2 * object_0[2] + depth_lane;
+    r.bend = bends ? bend_of(r.slope * x + r.offset, r.slope, downwards) : 0.0f;
     if (parallel) r.slope[7] = -t.inverse_depth[0];
     r.look = f8{part.colour[0], part.colour[1], part.colour[2], t.inverse_depth[0],
                 part.roughness, part.metallic,  part.emission,  t.inverse_depth[1]};
@@ -102,15 +119,16 @@ LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float y, RowPl
     r.id = part.id;
 }
 
-LANES_INLINE RowPlanes row_planes(const Shading& s, const Triangle& t, float y) {
+LANES_INLINE RowPlanes row_planes(const Shading& s, const Triangle& t, float x, float y) {
     RowPlanes r;
-    set_planes(s, t, y, r, nullptr);
+    set_planes(s, t, x, y, r, nullptr);
     return r;
 }
 
 LANES_INLINE FacePlanes face_planes(const Shading& s, const Triangle& t) {
     FacePlanes r;
-    set_planes(s, t, 0.0f, r, &r.down);
+    set_planes(s, t, 0.0f, 0.0f, r, &r.down);
+    r.bend = 0.0f;
     r.inverse_depth_down = t.inverse_depth[1];
     return r;
 }
@@ -127,6 +145,7 @@ LANES_INLINE void set_empty(Chunk& c, PixelRows& rows, int32_t i) {
     c.colour_texels[i] = c.detail_texels[i] = WHITE_TEXELS;
     c.id[i] = 0;
     c.empty[i] = -1;
+    c.bend[i] = 0.0f;
 }
 
 template <class Planes>
@@ -136,6 +155,7 @@ LANES_INLINE void set_pixel(const Planes& r, Chunk& c, PixelRows& rows, int32_t 
     store(rows.attributes + 8 * i, attributes_at(r, x, y) * depth + r.moved);
     store(rows.material + 8 * i, r.look);
     store(rows.maps + 8 * i, r.maps);
+    c.bend[i] = r.bend;
     c.colour_texels[i] = r.colour_texels;
     c.detail_texels[i] = r.detail_texels;
     c.id[i] = r.id;
@@ -166,6 +186,7 @@ LANES_INLINE void set_eight(const Planes& r, Chunk& c, int32_t i) {
     }
     store(c.id + i, splat(r.id));
     store(c.empty + i, splat(0));
+    store(c.bend + i, splat(r.bend));
     for (int k = 0; k < 8; k++) {
         c.colour_texels[i + k] = r.colour_texels;
         c.detail_texels[i + k] = r.detail_texels;
@@ -267,7 +288,7 @@ LANES_INLINE void gather_runs(const Shading& s, Chunk& c, const PlanesOf& planes
             for (; i < end; i++) set_empty(c, rows, i);
             continue;
         }
-        const auto planes = planes_of(*triangles[r]);
+        const auto planes = planes_of(*triangles[r], c.at_x[i]);
         c.hit = true;
         c.coloured |= planes.coloured;
         c.detailed |= planes.detailed;
@@ -339,7 +360,7 @@ void gather(const Shading& s, Chunk& c) {
         store(c.at_x + i, counting() + static_cast<float>(c.x + i));
         store(c.at_y + i, splat(y));
     }
-    gather_runs(s, c, [&](const Triangle& t) { return row_planes(s, t, y); });
+    gather_runs(s, c, [&](const Triangle& t, float x) { return row_planes(s, t, x, y); });
 }
 
 void gather_through_lens(const Shading& s, Chunk& c) {
@@ -366,7 +387,7 @@ void gather_through_lens(const Shading& s, Chunk& c) {
         set_steps(c, i, steps_at(lens, c.y, c.x + i));
     }
     prefetch(lens, c.y + 1, c.x, fine == nullptr);
-    gather_runs(s, c, [&](const Triangle& t) { return face_planes(s, t); });
+    gather_runs(s, c, [&](const Triangle& t, float) { return face_planes(s, t); });
     turn_slopes(c);
 }
 
@@ -392,7 +413,7 @@ void gather_fragments(const Shading& s, const Fragment* fragments, Chunk& c) {
             set_empty(c, rows, i);
             continue;
         }
-        const RowPlanes planes = row_planes(s, s.set->triangles[f.tag], f.y);
+        const RowPlanes planes = row_planes(s, s.set->triangles[f.tag], f.x, f.y);
         c.hit = true;
         c.coloured |= planes.coloured;
         c.detailed |= planes.detailed;

@@ -1,8 +1,8 @@
 // Shading: what polished surfaces mirror of what stands around them, by rays.
 //
-// What a ray meets is lit like what the camera sees, and mirrors the pictures of the room. Surfaces
-// that bend more from pixel to pixel than rays can stand for mirror these pictures themselves. For
-// rough ones see shade_rough.cpp.
+// What a ray meets is lit like what the camera sees, and mirrors the pictures of the room. Where a
+// surface bends within a pixel, several rays stand for what it mirrors. For rough ones see
+// shade_rough.cpp.
 #include <algorithm>
 #include <cstring>
 
@@ -16,9 +16,14 @@ constexpr float SMOOTH = 0.22f;
 // What is nearer than NEAR_M is not far, and what is farther than FAR_M is: there few rays would
 // not find what is bright and small, as pictures do.
 constexpr float NEAR_M = 0.3f, FAR_M = 0.8f;
-// Angle between the mirrored rays of neighbouring pixels, from where on pictures count more and
-// more, and alone [rad].
+// Angle between the mirrored rays of neighbouring pixels, from where on a pixel has several rays,
+// and from where on it has most of them [rad].
 constexpr float FLAT = 0.05f, BENT = 0.15f;
+constexpr int32_t BENT_RAYS = 2;
+constexpr float WIDEST = 0.5f;  // lobe that stands for what a pixel sees of a bend
+// What rays meet that stand for so many counts no more than so many times what pictures have, or
+// than light grey: lamps would be single bright pixels.
+constexpr float MOST_TIMES = 2.0f, LIGHT_GREY = 0.5f;
 // Share that is mirrored of all light that is sent back, where light is even: from where on rays
 // are worth it, and count alone.
 constexpr float LEAST_SHARE = 0.25f, WHOLE_SHARE = 0.4f;
@@ -117,8 +122,12 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
     memcpy(pixels.row.id, c.id, sizeof c.id);
     for (int32_t i = 0; i < c.count; i++) {
         if (!(pixels.share[i] > 0.0f)) continue;
-        const float angle = pixels.angle[i] = of_row ? ray_spread(c, pixels.rays, i) : USUAL_ANGLE;
-        pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
+        // Where normals turn, mirrored rays turn twice as far.
+        const float beside = of_row ? ray_spread(c, pixels.rays, i) : USUAL_ANGLE;
+        const float angle = pixels.angle[i] = max(beside, 2.0f * c.bend[i]);
+        // Where little is mirrored, pictures of the room do.
+        if (pixels.mirrored[i] < LARGE_SHARE)
+            pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
         pixels.step[i] = step_of(c.roughness[i], angle, pixels.mirrored[i] >= LARGE_SHARE);
         some |= pixels.share[i] > 0.0f;
     }
@@ -164,7 +173,8 @@ void count_rays(const Chunk& c, bool of_row, const TracedRow* last, TracedPixels
     for (int32_t i = 0; i < c.count; i++) {
         if (!(pixels.share[i] > 0.0f)) continue;
         const bool much = pixels.mirrored[i] >= LARGE_SHARE;
-        pixels.ray_count[i] = much && pixels.angle[i] > CURVED ? OWN_RAYS : 1;
+        const bool within = pixels.angle[i] < BENT || !of_row;
+        pixels.ray_count[i] = much && pixels.angle[i] > CURVED && within ? OWN_RAYS : 1;
         if (!of_row || pixels.step[i] == 1) continue;
         const bool flat = pixels.angle[i] < FLAT_PLANE || pixels.step[i] > 2;
         if (much && flat) {
@@ -188,7 +198,8 @@ vec3 ray_of_pixel(const Shading& s, const Chunk& c, const TracedPixels& pixels, 
     // Those who share have other rays each.
     const int32_t begin =
         pixels.step[i] > 1 ? column / pixels.step[i] + 2 * (row >> 1) : 5 * column + 7 * row;
-    const float rough = c.roughness[i] * c.roughness[i], least = 0.25f * pixels.angle[i];
+    const float rough = c.roughness[i] * c.roughness[i],
+                least = min(0.25f * pixels.angle[i], WIDEST);
     // Other rays in each row that looks.
     const int32_t turn = pixels.step[i] > 2 ? row >> 1 : 0;
     const vec3 ray = lobe_ray(c, i, begin + number * (LOBE / pixels.ray_count[i]), turn,
@@ -233,7 +244,13 @@ void trace_rays(const Shading& s, const Chunk& c, int32_t number, TracedPixels& 
     shade_hits(s, hits, count);
     for (int32_t k = 0; k < count; k++) {
         const vec3 sum = vector_at(pixels.row.sum, from[k]);
-        put(pixels.row.sum, from[k], sum + vector_at(hits.light, k) * weights[k]);
+        vec3 light = vector_at(hits.light, k);
+        if (pixels.angle[from[k]] > FLAT) {
+            const float usual = luminance(vector_at(c.mirrored, from[k]));
+            const float most = max(MOST_TIMES * usual, LIGHT_GREY / s.light->exposure);
+            light = clamp(light, 0.0f, most);
+        }
+        put(pixels.row.sum, from[k], sum + light * weights[k]);
     }
 }
 
@@ -315,7 +332,8 @@ Met met_around(const Chunk& c, const TracedPixels& pixels, const TracedRow* besi
 // Adds to what few pixels met what those above them did, less and less of it from row to row.
 void add_rows_above(const Chunk& c, const TracedRow& last, TracedPixels& pixels) {
     for (int32_t i = 0; i < c.count; i++) {
-        if (pixels.ray_count[i] == 0 || pixels.step[i] <= 2 || !shares(c, i, last, i)) continue;
+        const bool few = pixels.step[i] > 2 || pixels.angle[i] > BENT;
+        if (pixels.ray_count[i] == 0 || !few || !shares(c, i, last, i)) continue;
         const vec3 sum = vector_at(pixels.row.sum, i);
         const vec3 apart = vector_at(pixels.row.point, i) - vector_at(last.point, i);
         const float away = std::sqrt(dot(apart, apart)) * (1.0f / KEPT_M);

@@ -16,7 +16,6 @@ static inline void put(Vectors& v, int32_t i, vec3 value) {
     v.y[i] = value.y;
     v.z[i] = value.z;
 }
-static inline vec3 unit(vec3 a) { return a * (1.0f / std::sqrt(dot(a, a))); }
 
 constexpr float BEGIN_M = 5e-4f;  // a point lies that far from its surface, at most
 

@@ -120,6 +120,7 @@ LANES_INLINE Vec3<T> clamp(Vec3<T> a, float low, float high) {
 }
 
 // What GLSL has no name for.
+LANES_INLINE vec3 unit(vec3 a) { return a * (1.0f / sqrt(dot(a, a))); }
 LANES_INLINE f8 inverse_length(Vec3x8 a) { return 1.0f / sqrt(max(dot(a, a), 1e-20f)); }
 LANES_INLINE f8 largest(Vec3x8 a) { return max8(a.x, max8(a.y, a.z)); }
 LANES_INLINE Vec3x8 where(i8 mask, Vec3x8 a, Vec3x8 b) {
