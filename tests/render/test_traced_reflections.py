@@ -15,6 +15,7 @@ from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.model import Mesh
 from sailenv_ros.types.picture_settings import PictureSettings
 from tests.support.baked import baked, chart, layer
 from tests.support.picture import linear
@@ -22,6 +23,7 @@ from tests.support.tiny_scenes import (
     Thing,
     box_mesh,
     camera_at,
+    mesh_of,
     model_of,
     snapshot_of,
     wall_mesh,
@@ -245,6 +247,51 @@ def lobe_share(
     enter, leave = ends[0].max(axis=1), ends[1].min(axis=1)
     hit = (up > 0.0) & (along > 0.0) & (enter < leave) & (leave > 0.0)
     return float((weight * hit).mean())
+
+
+def rod_mesh(radius_m: float, length_m: float, segments: int = 24) -> Mesh:
+    """Upright and round, open at its ends."""
+    turns = 2.0 * np.pi * np.arange(segments + 1) / segments
+    out = np.stack([np.cos(turns), np.sin(turns), np.zeros(segments + 1)], axis=-1)
+    end = np.array([0.0, 0.0, length_m / 2.0])
+    first = np.arange(segments)
+    above = first + segments + 1
+    triangles = [[first, first + 1, above], [first + 1, above + 1, above]]
+    return mesh_of(
+        np.concatenate([radius_m * out - end, radius_m * out + end]),
+        np.concatenate([out, out]),
+        np.zeros((2 * segments + 2, 2)),
+        np.concatenate([np.stack(corners, axis=-1) for corners in triangles]),
+    )
+
+
+@pytest.mark.parametrize("roll_deg", [0.0, 6.0])
+def test_a_thin_rod_mirrors_what_stands_beside_it(native: NativeRenderer, roll_deg: float) -> None:
+    """Less than two pixels wide, it shows as much of a bright wall as a cylinder does by optics."""
+    radius_m, away_m, bright = 0.02, 2.95, 0.4
+    look = {"base_colour": (1.0, 1.0, 1.0, 1.0), "metallic": 1.0, "roughness": 0.06}
+    rod = Thing(
+        model_of(rod_mesh(radius_m, 6.0), **look),
+        Pose.from_rpy_deg((3.0, 0.0, 0.0), (roll_deg, 0.0, 0.0)),
+    )
+    wall = Thing(
+        model_of(
+            box_mesh((6.0, 0.1, 8.0)), base_colour=(0.0, 0.0, 0.0, 1.0), emission=(bright,) * 3
+        ),
+        Pose((1.0, away_m + 0.05, 0.0)),
+    )
+    light = baked({1: chart(BACK_WALL.model, BACK_WALL.pose)}, [], layer(None))
+    scene = snapshot_of([BACK_WALL, rod, wall], lights=(), environment=BLACK, baked=light)
+    seen = replace(camera(), picture=PictureSettings(occlusion_strength=0.0, tone_curve="linear"))
+    rgb = native.render(RenderRequest(scene, seen, ("rgb",))).views["rgb"]
+    middle = slice(seen.intrinsics.width // 2 - 20, seen.intrinsics.width // 2 + 20)
+    rows = linear(rgb)[:, middle, 1].sum(axis=1)
+    # The wall reaches from 5 m before the rod to 1 m behind it: normals turned by so much show it.
+    first, last = (0.5 * np.arctan2(away_m, ahead) for ahead in (5.0, -1.0))
+    shown_px = radius_m * (np.sin(last) - np.sin(first)) * seen.intrinsics.fx / 3.0
+    assert shown_px < 0.6
+    assert rows.mean() == pytest.approx(bright * shown_px, rel=0.2)
+    assert (rows > 0.25 * bright * shown_px).mean() > 0.9
 
 
 def test_frames_do_not_depend_on_threads_or_the_instruction_set() -> None:

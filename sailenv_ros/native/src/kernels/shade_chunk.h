@@ -22,6 +22,13 @@ struct Vectors {
     }
 };
 
+static inline vec3 vector_at(const Vectors& v, int32_t i) { return {v.x[i], v.y[i], v.z[i]}; }
+static inline void put(Vectors& v, int32_t i, vec3 value) {
+    v.x[i] = value.x;
+    v.y[i] = value.y;
+    v.z[i] = value.z;
+}
+
 struct Chunk {
     int32_t x, y, count, padded;                 // of a row; `x` and `y` not of fragments
     alignas(32) float at_x[CHUNK], at_y[CHUNK];  // [pixels]; on a face where the lens has a table
@@ -32,8 +39,9 @@ struct Chunk {
     bool parallel;                         // changes of uv are not over depth, below
     alignas(32) float depth[CHUNK];
     Vectors normal;  // world frame
-    // How much unit normals change from pixel to pixel; 0 of what is not smooth.
-    alignas(32) float bend[CHUNK];
+    // How unit normals change from a pixel to the one beside or below where they change more; 0 of
+    // what does not mirror sharply.
+    Vectors bend;
     // light_u is 0 of what has no light map: then light_v is the share that it hides of itself.
     alignas(32) float u[CHUNK], v[CHUNK], light_u[CHUNK], light_v[CHUNK];
     // Changes of uv / depth and of 1 / depth from pixel to pixel; of uv and of -depth where rays

@@ -14,7 +14,7 @@ struct RowPlanes {
     float inverse_depth_slope, inverse_depth_offset;
     int32_t id;
     bool coloured, detailed;
-    float bend;  // see `Chunk`
+    vec3 bend;  // see `Chunk`
 };
 
 // The same of a face, through a lens that bends lines: `offset` and the like are at y = 0.
@@ -47,12 +47,12 @@ LANES_INLINE f8 attribute_at(const FacePlanes& r, int k, f8 x, f8 y) {
 constexpr f8 NOTHING_THERE = {1, 0, 0, 0, 0, 0, 0, 1}, PLAIN = {0, 0, 0, 0, 1, 0, 0, 0},
              NO_MAPS = {0, 0, 0, 0, NO_MAP, 0, 0, 0};
 
-// How much unit normals change from pixel to pixel, at the place of `normal` and beside it.
-float bend_of(f8 normal, f8 right, f8 down) {
+// How unit normals change from pixel to pixel; see `Chunk`. `normal` is at a place.
+vec3 bend_of(f8 normal, f8 right, f8 down) {
     const auto unit_of = [](f8 n) { return unit(vec3(n[0], n[1], n[2])); };
     const vec3 here = unit_of(normal);
     const vec3 across = unit_of(normal + right) - here, along = unit_of(normal + down) - here;
-    return sqrt(max(dot(across, across), dot(along, along)));
+    return dot(across, across) > dot(along, along) ? across : along;
 }
 
 // Sets planes up at a row; `down`, if it is asked for, is how they change from row to row. `x` is a
@@ -94,7 +94,7 @@ LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float x, float
     const f8 depth_lane = {0, 0, 0, 0, 0, 0, 0, parallel ? -inverse_depth_0 : 1.0f};
     r.offset =
         object_0 * kept + n0 * object_0[0] + n1 * object_0[1] + n2 * object_0[2] + depth_lane;
-    r.bend = bends ? bend_of(r.slope * x + r.offset, r.slope, downwards) : 0.0f;
+    r.bend = bends ? bend_of(r.slope * x + r.offset, r.slope, downwards) : vec3(0.0f, 0.0f, 0.0f);
     if (parallel) r.slope[7] = -t.inverse_depth[0];
     r.look = f8{part.colour[0], part.colour[1], part.colour[2], t.inverse_depth[0],
                 part.roughness, part.metallic,  part.emission,  t.inverse_depth[1]};
@@ -128,7 +128,7 @@ LANES_INLINE RowPlanes row_planes(const Shading& s, const Triangle& t, float x, 
 LANES_INLINE FacePlanes face_planes(const Shading& s, const Triangle& t) {
     FacePlanes r;
     set_planes(s, t, 0.0f, 0.0f, r, &r.down);
-    r.bend = 0.0f;
+    r.bend = vec3(0.0f, 0.0f, 0.0f);
     r.inverse_depth_down = t.inverse_depth[1];
     return r;
 }
@@ -145,7 +145,7 @@ LANES_INLINE void set_empty(Chunk& c, PixelRows& rows, int32_t i) {
     c.colour_texels[i] = c.detail_texels[i] = WHITE_TEXELS;
     c.id[i] = 0;
     c.empty[i] = -1;
-    c.bend[i] = 0.0f;
+    put(c.bend, i, vec3(0.0f, 0.0f, 0.0f));
 }
 
 template <class Planes>
@@ -155,7 +155,7 @@ LANES_INLINE void set_pixel(const Planes& r, Chunk& c, PixelRows& rows, int32_t 
     store(rows.attributes + 8 * i, attributes_at(r, x, y) * depth + r.moved);
     store(rows.material + 8 * i, r.look);
     store(rows.maps + 8 * i, r.maps);
-    c.bend[i] = r.bend;
+    put(c.bend, i, r.bend);
     c.colour_texels[i] = r.colour_texels;
     c.detail_texels[i] = r.detail_texels;
     c.id[i] = r.id;
@@ -186,7 +186,7 @@ LANES_INLINE void set_eight(const Planes& r, Chunk& c, int32_t i) {
     }
     store(c.id + i, splat(r.id));
     store(c.empty + i, splat(0));
-    store(c.bend + i, splat(r.bend));
+    c.bend.set(i, splat(r.bend));
     for (int k = 0; k < 8; k++) {
         c.colour_texels[i + k] = r.colour_texels;
         c.detail_texels[i + k] = r.detail_texels;

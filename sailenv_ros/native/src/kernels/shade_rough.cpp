@@ -208,7 +208,8 @@ int32_t follow_rays(const Shading& s, const Chunk& c, RoughSample* const* sample
         const int32_t row = samples[i]->seen.pixel_y / SQUARE;
         // Every second facet; neighbours have the others.
         const int32_t facet = number * (LOBE / RAYS) + ((column + row + number / RAYS) & 1);
-        const vec3 ray = lobe_ray(c, i, facet, 3 * column + 5 * row + 7 * (number / RAYS),
+        const vec3 ray = lobe_ray(c, i, vector_at(c.normal, i), facet,
+                                  3 * column + 5 * row + 7 * (number / RAYS),
                                   c.roughness[i] * c.roughness[i], 1.0f);
         if (dot(ray, vector_at(c.normal, i)) < LEAST_RISE) continue;
         const vec3 begin = vector_at(c.point, i);

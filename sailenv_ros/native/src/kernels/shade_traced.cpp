@@ -20,7 +20,6 @@ constexpr float NEAR_M = 0.3f, FAR_M = 0.8f;
 // and from where on it has most of them [rad].
 constexpr float FLAT = 0.05f, BENT = 0.15f;
 constexpr int32_t BENT_RAYS = 2;
-constexpr float WIDEST = 0.5f;  // lobe that stands for what a pixel sees of a bend
 // What rays meet that stand for so many counts no more than so many times what pictures have, or
 // than light grey: lamps would be single bright pixels.
 constexpr float MOST_TIMES = 2.0f, LIGHT_GREY = 0.5f;
@@ -124,7 +123,8 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
         if (!(pixels.share[i] > 0.0f)) continue;
         // Where normals turn, mirrored rays turn twice as far.
         const float beside = of_row ? ray_spread(c, pixels.rays, i) : USUAL_ANGLE;
-        const float angle = pixels.angle[i] = max(beside, 2.0f * c.bend[i]);
+        const vec3 bend = vector_at(c.bend, i);
+        const float angle = pixels.angle[i] = max(beside, 2.0f * std::sqrt(dot(bend, bend)));
         // Where little is mirrored, pictures of the room do.
         if (pixels.mirrored[i] < LARGE_SHARE)
             pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
@@ -198,14 +198,21 @@ vec3 ray_of_pixel(const Shading& s, const Chunk& c, const TracedPixels& pixels, 
     // Those who share have other rays each.
     const int32_t begin =
         pixels.step[i] > 1 ? column / pixels.step[i] + 2 * (row >> 1) : 5 * column + 7 * row;
-    const float rough = c.roughness[i] * c.roughness[i],
-                least = min(0.25f * pixels.angle[i], WIDEST);
+    const float rough = c.roughness[i] * c.roughness[i], least = 0.25f * pixels.angle[i];
+    const vec3 own = vector_at(c.normal, i), bend = vector_at(c.bend, i);
+    const int32_t facet = begin + number * (LOBE / pixels.ray_count[i]);
+    if (4.0f * dot(bend, bend) > FLAT * FLAT) {
+        // One of the normals within the pixel.
+        const int32_t part = (5 * column + 3 * row + number * (LOBE / pixels.ray_count[i])) % LOBE;
+        const float place = (static_cast<float>(part) + 0.5f) / LOBE - 0.5f;
+        const vec3 ray = lobe_ray(c, i, unit(own + bend * place), facet, 0, rough, PART);
+        return dot(ray, own) < 0.02f ? vector_at(pixels.rays, i) : ray;
+    }
     // Other rays in each row that looks.
     const int32_t turn = pixels.step[i] > 2 ? row >> 1 : 0;
-    const vec3 ray = lobe_ray(c, i, begin + number * (LOBE / pixels.ray_count[i]), turn,
-                              rough > least ? rough : least, PART);
+    const vec3 ray = lobe_ray(c, i, own, facet, turn, rough > least ? rough : least, PART);
     // Below the surface there is nothing to be seen.
-    return dot(ray, vector_at(c.normal, i)) < 0.02f ? vector_at(pixels.rays, i) : ray;
+    return dot(ray, own) < 0.02f ? vector_at(pixels.rays, i) : ray;
 }
 
 // By how much what a ray meets counts, not the pictures.

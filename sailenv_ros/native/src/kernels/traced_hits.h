@@ -10,13 +10,6 @@
 
 namespace sailenv {
 
-static inline vec3 vector_at(const Vectors& v, int32_t i) { return {v.x[i], v.y[i], v.z[i]}; }
-static inline void put(Vectors& v, int32_t i, vec3 value) {
-    v.x[i] = value.x;
-    v.y[i] = value.y;
-    v.z[i] = value.z;
-}
-
 constexpr float BEGIN_M = 5e-4f;  // a point lies that far from its surface, at most
 
 struct SceneHit {
@@ -51,17 +44,16 @@ constexpr float GOLDEN_Y[LOBE] = {
     0.000000f, 0.675490f, -0.996171f, 0.793601f, -0.174182f, -0.536728f, 0.965715f, -0.887448f,
     0.343039f, 0.381556f, -0.905734f, 0.954164f, -0.501408f, -0.214719f, 0.818062f, -0.991708f};
 
-// A ray of GGX's lobe, which is so wide (roughness squared): by the microfacet of a number, turned
-// about the normal by so many golden angles. The facets are the least steep `part` of all, in parts
-// of equal weight (Vogel 1979, "A better way to construct the sunflower head").
-static inline vec3 lobe_ray(const Chunk& c, int32_t i, int32_t number, int32_t turn, float wide,
-                            float part) {
+// A ray of GGX's lobe about a normal, which is so wide (roughness squared): by the microfacet of a
+// number, turned about the normal by so many golden angles. The facets are the least steep `part`
+// of all, in parts of equal weight (Vogel 1979, "A better way to construct the sunflower head").
+static inline vec3 lobe_ray(const Chunk& c, int32_t i, vec3 n, int32_t number, int32_t turn,
+                            float wide, float part) {
     const int32_t k = number & (LOBE - 1), t = turn & (LOBE - 1);
     const float within = part * (static_cast<float>(k) + 0.5f) / LOBE;
     const float slope = wide * std::sqrt(within / (1.0f - within));
     const float x = slope * (GOLDEN_X[k] * GOLDEN_X[t] - GOLDEN_Y[k] * GOLDEN_Y[t]);
     const float y = slope * (GOLDEN_X[k] * GOLDEN_Y[t] + GOLDEN_Y[k] * GOLDEN_X[t]);
-    const vec3 n = vector_at(c.normal, i);
     // Two axes across the normal (Duff et al. 2017, "Building an orthonormal basis, revisited").
     const float sign = n.z < 0.0f ? -1.0f : 1.0f, a = -1.0f / (sign + n.z), b = n.x * n.y * a;
     const vec3 first(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
