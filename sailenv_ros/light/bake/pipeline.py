@@ -147,7 +147,8 @@ class _Bake:
         mirrors = mirror_shares(geometry, {d.instance.id: d.instance.category for d in drawn})
         lit = close_to_lamps(contents.lights, texels, albedo)
         emitters = emitters_of(geometry, texels, (emission, *glows.values(), *lit))
-        self._glows = np.logical_or.reduce([one.any(axis=1) for one in (emission, *glows.values())])
+        shining = [one.any(axis=1) for one in (emission, *glows.values())]
+        self._glows: NDArray[np.bool_] = np.logical_or.reduce(shining)
         self._around = Surroundings(
             scene=scene,
             faces=geometry.faces,
