@@ -5,8 +5,9 @@
 namespace sailenv {
 namespace {
 
-// What glass mirrors is looked at by rays if it is brighter than this share of what else is seen.
-constexpr float SEEN = 0.2f;
+// What glass mirrors is looked at by rays if it is brighter than a share of what else is seen; from
+// the larger one on rays tell all of it.
+constexpr float LEAST_SEEN = 0.2f, WELL_SEEN = 0.4f;
 
 // A triangle's corners, as planes over depth, or over 1 where rays are parallel: object normal, uv.
 struct Planes {
@@ -123,11 +124,14 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     }
     const Vec3x8 seen_through = Vec3x8(load(behind), load(behind + 8), load(behind + 16)) * through;
     if (light.reflecting && light.traced != nullptr) {
-        const f8 seen = luminance(own * light.exposure + seen_through);
-        const i8 clear = wanted & (luminance(mirrored) * share * light.exposure >= SEEN * seen);
-        if (any(clear)) {
-            mirrored =
-                trace_glass(s, point, direction, depth / inverse_length(ray), clear, mirrored);
+        const f8 seen = max8(luminance(own * light.exposure + seen_through), splat(1e-6f));
+        const f8 clear = luminance(mirrored) * share * light.exposure / seen;
+        const i8 looked_at = wanted & (clear >= LEAST_SEEN);
+        if (any(looked_at)) {
+            const f8 far = depth / inverse_length(ray);
+            const Vec3x8 met = trace_glass(s, point, direction, far, looked_at, mirrored);
+            const f8 weight = smoothstep(LEAST_SEEN, WELL_SEEN, clear);
+            mirrored = mirrored + (met - mirrored) * weight;
         }
     }
     const Vec3x8 added = share * mirrored + own;
