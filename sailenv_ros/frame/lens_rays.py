@@ -188,6 +188,7 @@ def _lagrange(nodes: NDArray[np.float64], place: float) -> NDArray[np.float64]:
     return np.asarray((to_place / apart).prod(axis=1))
 
 
+@cached_for_scenes(8)
 def depth_shares(lens: CameraIntrinsics) -> NDArray[np.float32]:
     """Return (H, W) float32 read-only: depth along the axis over distance along the ray."""
     shares = unit_rays(lens)[..., 2].astype(np.float32)
