@@ -1,7 +1,7 @@
 // Shading: what polished surfaces mirror of what stands around them, by rays.
 //
 // What a ray meets is lit like what the camera sees, and mirrors the pictures of the room. Where a
-// surface bends within a pixel, several rays stand for what it mirrors. For rough ones see
+// surface bends within a pixel, rays go by other normals from pixel to pixel. For rough ones see
 // shade_rough.cpp.
 #include <algorithm>
 #include <cstring>
@@ -16,12 +16,11 @@ constexpr float SMOOTH = 0.22f;
 // What is nearer than NEAR_M is not far, and what is farther than FAR_M is: there few rays would
 // not find what is bright and small, as pictures do.
 constexpr float NEAR_M = 0.3f, FAR_M = 0.8f;
-// Angle between the mirrored rays of neighbouring pixels, from where on a pixel has several rays,
-// and from where on it has most of them [rad].
+// Angle between the mirrored rays of neighbouring pixels, from where on pictures count more and
+// more where little is mirrored, and alone [rad].
 constexpr float FLAT = 0.05f, BENT = 0.15f;
-constexpr int32_t BENT_RAYS = 2;
-// What rays meet that stand for so many counts no more than so many times what pictures have, or
-// than light grey: lamps would be single bright pixels.
+// Where few rays stand for many, what they meet counts no more than so many times what pictures
+// have, or than light grey: lamps would be single bright pixels.
 constexpr float MOST_TIMES = 2.0f, LIGHT_GREY = 0.5f;
 // Share that is mirrored of all light that is sent back, where light is even: from where on rays
 // are worth it, and count alone.
@@ -126,8 +125,9 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
         const vec3 bend = vector_at(c.bend, i);
         const float angle = pixels.angle[i] = max(beside, 2.0f * std::sqrt(dot(bend, bend)));
         // Where little is mirrored, pictures of the room do.
-        if (pixels.mirrored[i] < LARGE_SHARE)
+        if (pixels.mirrored[i] < LARGE_SHARE) {
             pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
+        }
         pixels.step[i] = step_of(c.roughness[i], angle, pixels.mirrored[i] >= LARGE_SHARE);
         some |= pixels.share[i] > 0.0f;
     }
@@ -203,7 +203,8 @@ vec3 ray_of_pixel(const Shading& s, const Chunk& c, const TracedPixels& pixels, 
     const int32_t facet = begin + number * (LOBE / pixels.ray_count[i]);
     if (4.0f * dot(bend, bend) > FLAT * FLAT) {
         // One of the normals within the pixel.
-        const int32_t part = (5 * column + 3 * row + number * (LOBE / pixels.ray_count[i])) % LOBE;
+        const int32_t turned = 5 * column + 3 * row + number * (LOBE / pixels.ray_count[i]);
+        const int32_t part = turned & (LOBE - 1);
         const float place = (static_cast<float>(part) + 0.5f) / LOBE - 0.5f;
         const vec3 ray = lobe_ray(c, i, unit(own + bend * place), facet, 0, rough, PART);
         return dot(ray, own) < 0.02f ? vector_at(pixels.rays, i) : ray;
