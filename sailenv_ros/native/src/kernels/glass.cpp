@@ -8,6 +8,7 @@ namespace {
 // What glass mirrors is looked at by rays if it is brighter than a share of what else is seen; from
 // the larger one on rays tell all of it.
 constexpr float LEAST_SEEN = 0.2f, WELL_SEEN = 0.4f;
+constexpr float DARK = 1e-4f;  // radiance, exposed
 
 // A triangle's corners, as planes over depth, or over 1 where rays are parallel: object normal, uv.
 struct Planes {
@@ -124,8 +125,9 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     }
     const Vec3x8 seen_through = Vec3x8(load(behind), load(behind + 8), load(behind + 16)) * through;
     if (light.reflecting && light.traced != nullptr) {
-        const f8 seen = max8(luminance(own * light.exposure + seen_through), splat(1e-6f));
-        const f8 clear = luminance(mirrored) * share * light.exposure / seen;
+        const f8 seen = luminance(own * light.exposure + seen_through);
+        // In the dark all is seen that glass mirrors.
+        const f8 clear = (luminance(mirrored) * share * light.exposure + DARK) / (seen + DARK);
         const i8 looked_at = wanted & (clear >= LEAST_SEEN);
         if (any(looked_at)) {
             const f8 far = depth / inverse_length(ray);
