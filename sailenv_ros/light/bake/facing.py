@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from sailenv_ros.light.bake.crossed_layers import above_crossed_layers
 from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.light.bake.texels import Texels, rasterised
+from sailenv_ros.light.bake.uneven_texels import with_typical_points
 from sailenv_ros.light.bake.worker_pool import in_chunks
 from sailenv_ros.rays.light_rays import LIFT_M, RayScene
 from sailenv_ros.rays.ray_patterns import fibonacci_sphere
@@ -43,6 +44,7 @@ def lit_texels(
     """Return the texels in use, on the open side of their surfaces, beyond layers that crossed."""
     texels = rasterised(geometry, layout)
     texels = _turned_over(texels, _turned(geometry, scene, texels, workers))
+    texels = with_typical_points(geometry, scene, layout.places, texels, workers)
     positions = above_crossed_layers(
         geometry, scene, texels.positions, texels.faces, texels.triangle
     )

@@ -15,7 +15,7 @@ from sailenv_ros.native.bake_types import TexelMap
 from sailenv_ros.native.texel_kernels import cover_texels
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
-__all__ = ["Texels", "off_the_edges", "rasterised"]
+__all__ = ["Texels", "normals_at", "off_the_edges", "rasterised"]
 
 REACH = 1.5
 """Texels this near to a triangle stand for its nearest point: bilinear look-ups meet them."""
@@ -100,11 +100,6 @@ def rasterised(geometry: StaticGeometry, layout: Layout) -> Texels:
     triangle = owner[rows, columns]
     share = off_the_edges(geometry.corners[triangle], weights[rows, columns])
     faces = geometry.faces[triangle]
-    normals = np.einsum("nc,ncx->nx", share, geometry.normals[triangle])
-    # Normals that point through their own triangle are none.
-    facing = np.einsum("nx,nx->n", normals, faces)
-    normals[facing < 0.05] = faces[facing < 0.05]
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     return Texels(
         index=index,
         rows=rows.astype(np.int32),
@@ -112,9 +107,25 @@ def rasterised(geometry: StaticGeometry, layout: Layout) -> Texels:
         triangle=triangle,
         weights=share,
         positions=np.einsum("nc,ncx->nx", share, geometry.corners[triangle]),
-        normals=normals,
+        normals=normals_at(geometry, triangle, share, faces),
         faces=faces,
     )
+
+
+def normals_at(
+    geometry: StaticGeometry,
+    triangles: NDArray[np.int32],
+    weights: NDArray[np.float32],
+    faces: NDArray[np.float32],
+) -> NDArray[np.float32]:
+    """Return (N, 3) float32: normals of the smooth surface at points, to the side of `faces`."""
+    normals = np.einsum("nc,ncx->nx", weights, geometry.normals[triangles])
+    normals *= np.sign(np.einsum("nx,nx->n", faces, geometry.faces[triangles]))[:, None]
+    # Normals that point through their own triangle are none.
+    through = np.einsum("nx,nx->n", normals, faces) < 0.05
+    normals[through] = faces[through]
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return normals
 
 
 def off_the_edges(corners: NDArray[np.float32], share: NDArray[np.float32]) -> NDArray[np.float32]:
