@@ -69,11 +69,12 @@ def main() -> int:
     rows: list[Row] = []
     wanted = 0
     try:
-        for scene in listed if arguments.scenes is None else arguments.scenes:
+        own = [scene for scene in listed if not scene.endswith(".yaml")]
+        for scene in own if arguments.scenes is None else arguments.scenes:
             snapshot = _snapshot(scene)
             views = _cameras(listed.get(scene), snapshot, arguments, picture)
             wanted += len(views) + 2 * arguments.moves
-            rows += _compared(scene.replace(":", "_"), snapshot, views, arguments)
+            rows += _compared(_file_name(scene), snapshot, views, arguments)
             for number in range(arguments.moves):
                 moved, move = moved_room(scene, snapshot, number, anew=arguments.anew)
                 width, height = arguments.size
@@ -91,9 +92,16 @@ def main() -> int:
     return 0 if arguments.trace_only or len(rows) == wanted else 1
 
 
+def _file_name(scene: str) -> str:
+    """Return a scene's name, or that of its file, as part of a file's name."""
+    return Path(scene).stem.replace(":", "_")
+
+
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--scenes", nargs="+", default=None, help="of views.yaml; all of them")
+    parser.add_argument(
+        "--scenes", nargs="+", default=None, help="names or files; the package's rooms"
+    )
     parser.add_argument("--views", nargs="+", default=None, help="names of cameras; all of them")
     parser.add_argument(
         "--chosen", type=int, default=3, metavar="N", help="cameras of scenes not in views.yaml"
