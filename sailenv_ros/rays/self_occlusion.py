@@ -3,7 +3,7 @@
 In the folds of a curtain, in a cup or between keys little of the light from around arrives. How
 much is the same wherever the model stands, so it is found once: rays from points of every triangle
 tell which share of the cosine-weighted hemisphere is hidden, and a fit gives it to the vertices,
-between which it is interpolated. Glass hides nothing.
+between which it is interpolated. Glass hides what it does not let through.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from sailenv_ros.native.bake_types import LitPoints
 from sailenv_ros.native.gather_kernels import hemisphere_rays
 from sailenv_ros.native.library import native_library
-from sailenv_ros.native.ray_kernels import light_hits
+from sailenv_ros.native.ray_kernels import light_share
+from sailenv_ros.rays.light_rays import NEVER
 from sailenv_ros.rays.model_triangles import ModelTriangles, triangles_of
 from sailenv_ros.rays.ray_patterns import low_discrepancy_points
-from sailenv_ros.rays.triangle_tree import triangle_tree
+from sailenv_ros.rays.triangle_tree import in_leaves, triangle_tree
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
 from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.digests import add_array, once
@@ -59,16 +60,16 @@ POINTS_AT_ONCE = 1 << 14
 def vertex_occlusion(model: Model) -> tuple[Floats, ...]:
     """Return which share of the light from around a model hides from its own surface.
 
-    Materials count by what is opaque alone, so painted models share what was found.
+    Materials count by what they let through alone, so painted models share what was found.
 
     Returns
     -------
     tuple of (V,) float32
-        Of the vertices of each part, 0 to 1; 0 of glass, and of what nothing hides.
+        Of the vertices of each part, 0 to 1; 0 of what nothing hides.
     """
     triangles = triangles_of(model)
     digest = blake2b(native_library().digest.encode(), digest_size=16)
-    for array in (triangles.corners, triangles.normals, triangles.passes == 0.0):
+    for array in (triangles.corners, triangles.normals, triangles.passes):
         add_array(digest, array)
     for part in model.parts:
         add_array(digest, part.mesh.triangles)
@@ -98,16 +99,13 @@ def _arrays(model: Model, triangles: ModelTriangles) -> dict[str, Floats]:
     firsts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
     own = [mesh.triangles + first for mesh, first in zip(meshes, firsts[:-1], strict=True)]
     vertices = np.concatenate([np.zeros((0, 3), np.int64), *own])
-    solid = triangles.passes == 0.0
+    there = triangles.passes < 1.0
     hidden = np.zeros(firsts[-1])
-    if solid.any():
-        corners, normals = (
-            array[solid].astype(np.float64) for array in (triangles.corners, triangles.normals)
-        )
-        owners, weights = _points(triangles.areas_m2[solid])
-        shares = _hidden_at(corners, normals, owners, weights)
+    if there.any():
+        owners, weights = _points(triangles.areas_m2[there])
+        shares = _hidden_at(triangles, np.flatnonzero(there)[owners], weights)
         if shares.any():
-            hidden = _fitted(shares, vertices[solid][owners], weights, len(hidden))
+            hidden = _fitted(shares, vertices[there][owners], weights, len(hidden))
     parts = np.split(hidden.astype(np.float32), firsts[1:-1])
     return {f"part_{number}": part for number, part in enumerate(parts)}
 
@@ -127,10 +125,14 @@ def _points(areas: Doubles) -> tuple[NDArray[np.intp], Doubles]:
 
 
 def _hidden_at(
-    corners: Doubles, normals: Doubles, owners: NDArray[np.intp], weights: Doubles
+    triangles: ModelTriangles, owners: NDArray[np.intp], weights: Doubles
 ) -> Doubles:
-    """Return (P,) the share of directions in which each point meets the model itself."""
-    tree = triangle_tree(corners.astype(np.float32))
+    """Return (P,) the share of light that the model itself keeps from each point."""
+    corners, normals = triangles.corners.astype(np.float64), triangles.normals.astype(np.float64)
+    passes = triangles.passes
+    clear = (passes > 0.0) & (passes < 1.0)
+    solid, panes = (triangle_tree(triangles.corners[one]) for one in (passes == 0.0, clear))
+    glass = panes.record, in_leaves(passes[clear], panes.order)
     middle = corners.mean(axis=1, keepdims=True)
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     flat *= np.where((flat * normals.mean(axis=1)).sum(axis=1) < 0.0, -1.0, 1.0)[:, None]
@@ -147,9 +149,10 @@ def _hidden_at(
         some = slice(first, first + POINTS_AT_ONCE)
         given = (points[some], turned[some], flat[owners[some]], shifts[some])
         lit = LitPoints(*(np.ascontiguousarray(array, np.float32) for array in given))
-        rays = (array.reshape(-1, 3) for array in hemisphere_rays(lit, pattern))
-        found = light_hits(tree.record, *rays, threads=thread_count())
-        shares[some] = (found.triangle >= 0).reshape(-1, RAYS).mean(axis=1)
+        origins, towards = (array.reshape(-1, 3) for array in hemisphere_rays(lit, pattern))
+        never = np.full(len(origins), NEVER, np.float32)
+        arrives = light_share(solid.record, glass, origins, towards, never, threads=thread_count())
+        shares[some] = 1.0 - arrives.reshape(-1, RAYS).mean(axis=1, dtype=np.float64)
     return shares
 
 

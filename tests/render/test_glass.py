@@ -6,10 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
-from sailenv_ros.types.colour import srgb_from_linear
+from sailenv_ros.render.contract import RenderRequest
+from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.types.colour import LINEAR_OF_SRGB8, srgb_from_linear
 from sailenv_ros.types.geometry import Pose, look_at
 from sailenv_ros.types.lights import Environment
+from sailenv_ros.types.model import Mesh
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.views import LIT_VIEWS, RENDERED_VIEWS
 from tests.render.conftest import Render
@@ -19,6 +23,7 @@ from tests.support.tiny_scenes import (
     box_mesh,
     camera_at,
     contents_of,
+    mesh_of,
     model_of,
     moved,
     snapshot_of,
@@ -33,6 +38,7 @@ UNIFORM = Environment(sky_zenith=GREY, sky_horizon=GREY, sky_ground=GREY)
 PLAIN = PictureSettings(tone_curve="linear", occlusion_strength=0.0, smooth_edges=False)
 EYE = replace(camera_at(), picture=PLAIN)
 WALL = wall_mesh(30.0, 30.0)
+ATTRIBUTES = "positions", "normals", "uvs"
 
 
 def glass(rgba: tuple[float, float, float, float], distance_m: float, **material: object) -> Thing:
@@ -152,3 +158,67 @@ def test_panes_are_lit_by_the_sky_as_other_surfaces_are(
     seen = render(scene, eye, "rgb")["rgb"][36, 48].astype(float)
     wanted = PANE * mirrored + (1 - PANE) * matt
     np.testing.assert_allclose(seen, 255.0 * srgb_from_linear(wanted), atol=1.0)
+
+
+@pytest.mark.parametrize("turn", [0.0, 17.0])
+def test_borders_of_glass_are_smooth(turn: float) -> None:
+    """Dense cloth, which mirrors nothing, dims each pixel by the share of it that it covers."""
+    size = 0.8
+    sheet = model_of(
+        wall_mesh(size, size), base_colour=(0, 0, 0, 0.8), alpha="blend", roughness=1.0
+    )
+    thing = Thing(sheet, Pose.from_rpy_deg((2.0, 0.003, 0.001), (turn, 0, 0)))
+    environment = replace(UNIFORM, background="colour", background_colour=GREY)
+    scene = snapshot_of([thing], lights=(), environment=environment)
+    eye = replace(camera_at(), picture=replace(PLAIN, smooth_edges=True))
+    renderer = NativeRenderer()
+    try:
+        rgb = renderer.render(RenderRequest(scene, eye, ("rgb",))).views["rgb"]
+    finally:
+        renderer.close()
+    light = LINEAR_OF_SRGB8[rgb[..., 1]] / LINEAR_OF_SRGB8[rgb[0, 0, 1]]
+    covered = (1.0 - light) / (1.0 - 0.2 * 0.2)
+    # Of 16 by 16 points of each pixel: where rays through them meet the sheet.
+    lens, steps = eye.intrinsics, (np.arange(16) + 0.5) / 16 - 0.5
+    u = (np.arange(lens.width)[:, None] + steps).ravel()
+    v = (np.arange(lens.height)[:, None] + steps).ravel()
+    y = -(u - lens.cx) / lens.fx * 2.0 - 0.003
+    z = -(v - lens.cy) / lens.fy * 2.0 - 0.001
+    c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    along, up = c * y[None] + s * z[:, None], c * z[:, None] - s * y[None]
+    inside = np.maximum(np.abs(along), np.abs(up)) < 0.5 * size
+    shares = inside.reshape(lens.height, 16, lens.width, 16).mean(axis=(1, 3))
+    border = (shares > 0.0) & (shares < 1.0)
+    assert border.sum() > 50
+    error = covered - shares
+    assert np.abs(error).max() < 0.25
+    assert np.abs(error)[border].mean() < 0.08
+    assert abs(error.sum()) < 0.01 * shares.sum()
+    inner = shares == np.roll(shares, 1, 0)
+    for step, axis in ((-1, 0), (1, 1), (-1, 1)):
+        inner &= shares == np.roll(shares, step, axis)
+    assert np.abs(error[inner]).max() < 0.02
+
+
+def test_the_far_wall_of_a_vessel_comes_first() -> None:
+    """Triangles of one part are drawn by their distance, not in the order of the mesh."""
+    near, far = wall_mesh(30.0, 30.0), wall_mesh(30.0, 30.0)
+    near = replace(near, positions=near.positions + np.float32([2.0, 0.0, 0.0]))
+    far = replace(far, positions=far.positions + np.float32([3.0, 0.0, 0.0]))
+
+    def seen(*walls: Mesh) -> NDArray[np.uint8]:
+        joined = mesh_of(
+            *(np.concatenate([getattr(one, name) for one in walls]) for name in ATTRIBUTES),
+            np.concatenate([one.triangles + 4 * k for k, one in enumerate(walls)]),
+        )
+        look = {"base_colour": (0.2, 0.8, 0.3, 0.6), "alpha": "blend", "roughness": 0.05}
+        scene = snapshot_of([Thing(model_of(joined, **look))], lights=(), environment=UNIFORM)
+        renderer = NativeRenderer()
+        try:
+            return renderer.render(RenderRequest(scene, EYE, ("rgb",))).views["rgb"].copy()
+        finally:
+            renderer.close()
+
+    pictures = seen(near, far), seen(far, near)
+    assert (pictures[0][36, 48] != seen(near)[36, 48]).any()
+    np.testing.assert_array_equal(*pictures)

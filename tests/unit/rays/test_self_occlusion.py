@@ -7,12 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.rays import self_occlusion
 from sailenv_ros.rays.self_occlusion import vertex_occlusion
 from sailenv_ros.types.model import Material, Mesh, Model, ModelPart
 from tests.support.curved_meshes import bowl, sheet
+from tests.support.tiny_scenes import box_mesh
 
 
 @pytest.fixture(autouse=True)
@@ -73,17 +75,37 @@ def test_winding_and_emptiness_do_not_matter() -> None:
     assert vertex_occlusion(Model(name="empty", parts=())) == ()
 
 
-def test_glass_hides_nothing() -> None:
-    """What is seen through is neither dark itself nor darkens what it holds."""
-    clear = model_of(bowl(), alpha="blend", base_colour=(1.0, 1.0, 1.0, 0.1)).parts[0]
-    inner = replace(model_of(bowl()).parts[0], mesh=Primitives().load("cube").model.parts[0].mesh)
-    found = vertex_occlusion(Model(name="m", parts=(clear, inner)))
-    assert all((part == 0.0).all() for part in found)
+@pytest.mark.parametrize("alpha", [0.0, 0.4])
+def test_glass_hides_what_it_does_not_let_through(alpha: float) -> None:
+    """A cube in a closed glass case gets what comes through it; what lies outside gets all."""
+    glass = {"alpha": "blend", "base_colour": (1.0, 1.0, 1.0, alpha)}
+    case = model_of(box_mesh(1.0), **glass).parts[0]
+    held = model_of(box_mesh(0.02)).parts[0]
+    outer, inner = vertex_occlusion(Model(name="m", parts=(case, held)))
+    # From the middle rays in all directions of a half space meet faces of a cube.
+    turns = np.random.default_rng(3).normal(size=(100_000, 3))
+    cosines = np.abs(turns).max(axis=1) / np.linalg.norm(turns, axis=1)
+    up = np.maximum(turns[:, 2] / np.linalg.norm(turns, axis=1), 0.0)
+    through = (1.0 - alpha) * (glazing(cosines) * up).sum() / up.sum()
+    if alpha == 0.0:
+        assert not inner.any()  # as clear as that is left out
+    else:
+        assert np.abs(inner - (1.0 - through)).max() < 0.03
+    assert not outer.any()
+
+
+def glazing(cosine: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Share that double glazing lets through, by Fresnel's equations for an index of 1.5."""
+    inside = np.sqrt(1.0 - (1.0 - cosine**2) / 2.25)
+    across = (cosine - 1.5 * inside) / (cosine + 1.5 * inside)
+    along = (1.5 * cosine - inside) / (1.5 * cosine + inside)
+    mirrored = 0.5 * (across**2 + along**2)
+    return ((1.0 - mirrored) / (1.0 + mirrored)) ** 2
 
 
 def test_what_was_found_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """Another process, and a model in another paint, read what the first one found."""
     (made,) = vertex_occlusion(model_of(bowl()))
-    monkeypatch.setattr(self_occlusion, "light_hits", None)
+    monkeypatch.setattr(self_occlusion, "light_share", None)
     (kept,) = vertex_occlusion(model_of(bowl(), base_colour=(1.0, 0.0, 0.0, 1.0)))
     assert made.tobytes() == kept.tobytes()

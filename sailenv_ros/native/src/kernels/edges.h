@@ -12,7 +12,7 @@ namespace sailenv {
 // Memory of a thread for one band of fine samples.
 struct EdgeScratch {
     std::vector<uint32_t> visible;  // as in `Scratch`, of fine samples
-    std::vector<float> inverse_depth;
+    std::vector<float> inverse_depth, glazed;  // of opaque surfaces, and with others
     int64_t stride = 0;
 };
 

@@ -1,4 +1,6 @@
 // See-through surfaces over a finished picture; the same model as shaders/glass.frag.
+#include <algorithm>
+
 #include "shade.h"
 #include "texture.h"
 
@@ -8,9 +10,11 @@ namespace {
 // What glass mirrors is looked at by rays if it is brighter than a share of what else is seen; from
 // the larger one on rays tell all of it.
 constexpr float LEAST_SEEN = 0.2f, WELL_SEEN = 0.4f;
-constexpr float DARK = 1e-4f;  // radiance, exposed
+constexpr float MOST_BENT = 0.3f;  // what a pixel bends more has no picture [rad]
+constexpr float DARK = 1e-4f;      // radiance, exposed
 
-// A triangle's corners, as planes over depth, or over 1 where rays are parallel: object normal, uv.
+// A triangle's corners, as planes over depth, or over 1 where rays are parallel: object normal, uv,
+// place in the light map or 0 and what is hidden.
 struct Planes {
     f8 along_x, along_y, at_0;
 };
@@ -70,12 +74,31 @@ Vec3x8 light_around(const Light& light, int32_t id, Vec3x8 normal, Vec3x8 point)
 }
 
 // Radiance that eight points of an instance mirror.
-Vec3x8 mirrored_light(const Light& light, const Part& part, Vec3x8 point, Vec3x8 direction) {
+Vec3x8 mirrored_light(const Light& light, const Part& part, Vec3x8 point, Vec3x8 direction,
+                      f8 roughness) {
     if (!light.baked || !light.reflecting) {
         return light.ambient + light.sky_share * analytic_sky(light, direction.z);
     }
     const i8 seen_from = splat(light.reflection_table[part.id]);
-    return mirrored_room(light, seen_from, point, direction, splat(part.roughness));
+    return mirrored_room(light, seen_from, point, direction, roughness);
+}
+
+// How a surface curves within eight pixels.
+struct Curve {
+    f8 least;  // of the square of the cosine to the view: what it is in the middle of a border
+    f8 bend;   // of the normal, from pixel to pixel [rad]
+};
+
+// `right` and `down` are what a normal, whose length's inverse is `unit`, changes by to the next
+// pixels. At a border the square of the cosine grows evenly from 0 on.
+Curve curve_of(Vec3x8 normal, f8 unit, f8 facing, Vec3x8 view, Vec3x8 right, Vec3x8 down) {
+    const auto growth = [&](Vec3x8 step) {
+        const Vec3x8 beside = normal + step;
+        const f8 cosine = dot(beside, view) * inverse_length(beside);
+        return abs8(cosine * cosine - facing * facing);
+    };
+    return {0.5f * max8(growth(right), growth(down)),
+            sqrt8(max8(dot(right, right), dot(down, down))) * unit};
 }
 
 // Dims what lies behind eight pixels and adds what the glass mirrors and scatters. `at` and `row`
@@ -88,28 +111,59 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     const bool parallel = s.sight == Sight::PARALLEL;
     const f8 depth = parallel ? -inverse_depth : 1.0f / (wanted ? inverse_depth : splat(1.0f));
     const f8 over = parallel ? splat(1.0f) : depth;
-    auto attribute = [&](int k) {
+    const float over_x = parallel ? 0.0f : t.inverse_depth[0],
+                over_y = parallel ? 0.0f : t.inverse_depth[1];
+    const auto attribute = [&](int k) {
         return (p.along_x[k] * at + (p.along_y[k] * row + p.at_0[k])) * over;
     };
     const f8 u = attribute(3), v = attribute(4);
-    const float over_x = parallel ? 0.0f : t.inverse_depth[0],
-                over_y = parallel ? 0.0f : t.inverse_depth[1];
     const Base8 base = base_colour(part, p, steps, over, over_x, over_y, u, v, wanted);
     const Vec3x8 colour = base.colour * base.colour;
     const Vec3x8 view = ray * -inverse_length(ray);
     const float (*n)[8] = s.frames[part.instance].normal_columns;
-    Vec3x8 normal = vec3(n[0][0], n[0][1], n[0][2]) * attribute(0) +
-                    vec3(n[1][0], n[1][1], n[1][2]) * attribute(1) +
-                    vec3(n[2][0], n[2][1], n[2][2]) * attribute(2);
+    const auto in_world = [&](Vec3x8 a) {
+        return vec3(n[0][0], n[0][1], n[0][2]) * a.x + vec3(n[1][0], n[1][1], n[1][2]) * a.y +
+               vec3(n[2][0], n[2][1], n[2][2]) * a.z;
+    };
+    const Vec3x8 own_normal(attribute(0), attribute(1), attribute(2));
+    Vec3x8 normal = in_world(own_normal);
     const f8 unit = inverse_length(normal);
     f8 facing = dot(normal, view) * unit;
+    const bool mirrors = part.roughness < LEAST_CLOTH;
+    Curve curve{};
+    if (mirrors) {
+        const auto slope = [&](const float* along, float over_along) {
+            return over * (vec3(along[0], along[1], along[2]) - own_normal * over_along);
+        };
+        const float x_along[3] = {p.along_x[0], p.along_x[1], p.along_x[2]},
+                    y_along[3] = {p.along_y[0], p.along_y[1], p.along_y[2]};
+        const Vec3x8 slope_x = slope(x_along, over_x), slope_y = slope(y_along, over_y);
+        const Vec3x8 right(to_right(steps, slope_x.x, slope_y.x),
+                           to_right(steps, slope_x.y, slope_y.y),
+                           to_right(steps, slope_x.z, slope_y.z)),
+            down(downwards(steps, slope_x.x, slope_y.x), downwards(steps, slope_x.y, slope_y.y),
+                 downwards(steps, slope_x.z, slope_y.z));
+        curve = curve_of(normal, unit, facing, view, in_world(right), in_world(down));
+    }
     normal = normal * (facing < 0.0f ? -unit : unit);
     facing = abs8(facing);
-    const f8 share = pane_reflectance(facing, part.roughness), rest = 1.0f - share;
+    // A pixel at a border mirrors what it does in its middle, wherever its centre lies.
+    const f8 across = sqrt8(max8(facing * facing, curve.least));
+    const f8 share = pane_reflectance(across, part.roughness), rest = 1.0f - share;
     const Vec3x8 point = begin + ray * depth;
     const Vec3x8 direction = 2.0f * facing * normal - view;
-    Vec3x8 mirrored = mirrored_light(light, part, point, direction);
-    const Vec3x8 around = light_around(light, part.id, normal, point);
+    Vec3x8 mirrored = splat(vec3(0.0f, 0.0f, 0.0f));
+    if (mirrors) {
+        // What a pixel mirrors in many directions is as if it were rough.
+        const f8 roughness = clamp8(curve.bend, part.roughness, 1.0f);
+        mirrored = mirrored_light(light, part, point, direction, roughness);
+    }
+    Vec3x8 around = light_around(light, part.id, normal, point);
+    const f8 hidden = attribute(5) > 0.0f ? splat(0.0f) : attribute(6);
+    if (any(wanted & (hidden > 0.0f))) {
+        around = around * Vec3x8(arriving_share(hidden, colour.x), arriving_share(hidden, colour.y),
+                                 arriving_share(hidden, colour.z));
+    }
     const Vec3x8 own = rest * base.alpha * colour * around + colour * part.emission;
     // What comes through takes the hue of the material, the more the denser it is.
     const Vec3x8 hue = colour / max(largest(colour), 1e-3f);
@@ -124,11 +178,11 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
         }
     }
     const Vec3x8 seen_through = Vec3x8(load(behind), load(behind + 8), load(behind + 16)) * through;
-    if (light.reflecting && light.traced != nullptr) {
+    if (mirrors && light.reflecting && light.traced != nullptr) {
         const f8 seen = luminance(own * light.exposure + seen_through);
         // In the dark all is seen that glass mirrors.
         const f8 clear = (luminance(mirrored) * share * light.exposure + DARK) / (seen + DARK);
-        const i8 looked_at = wanted & (clear >= LEAST_SEEN);
+        const i8 looked_at = wanted & (clear >= LEAST_SEEN) & (curve.bend < MOST_BENT);
         if (any(looked_at)) {
             const f8 far = depth / inverse_length(ray);
             const Vec3x8 met = trace_glass(s, point, direction, far, looked_at, mirrored);
@@ -195,29 +249,61 @@ void draw_lens_row(const Shading& s, const Triangle& t, const Part& part, const 
     }
 }
 
+// How near the middle of a triangle's box in the picture is; see `Triangle::inverse_depth`.
+float nearness(const Triangle& t, const Projection& projection) {
+    const int32_t x = (t.x0 + t.x1) / 2, y = (t.y0 + t.y1) / 2;
+    float at = static_cast<float>(x), down = static_cast<float>(y);
+    if (projection.table != nullptr) {
+        const int64_t place = y * projection.table->stride + x;
+        at = projection.table->x[place];
+        down = projection.table->y[place];
+    }
+    return t.inverse_depth[0] * at + (t.inverse_depth[1] * down + t.inverse_depth[2]);
+}
+
+// The triangles of a band, part by part in their order, of each part the most distant first: the
+// far wall of a vessel before the near one, which dims what it sends.
+std::vector<uint32_t> farthest_first(const TriangleSet& glass, const Projection& projection,
+                                     int32_t band) {
+    std::vector<uint32_t> order;
+    for (int64_t g = 0; g < glass.segment_count; g++) {
+        const Segment& segment = glass.segments[static_cast<size_t>(g)];
+        const auto begin = segment.entries.begin();
+        order.insert(order.end(), begin + segment.starts[static_cast<size_t>(band)],
+                     begin + segment.starts[static_cast<size_t>(band) + 1]);
+    }
+    const auto part = [&](uint32_t number) { return glass.triangles[number].part; };
+    for (auto first = order.begin(); first != order.end();) {
+        const auto end = std::find_if(
+            first, order.end(), [&](uint32_t number) { return part(number) != part(*first); });
+        std::stable_sort(first, end, [&](uint32_t a, uint32_t b) {
+            return nearness(glass.triangles[a], projection) <
+                   nearness(glass.triangles[b], projection);
+        });
+        first = end;
+    }
+    return order;
+}
+
 }  // namespace
 
 void draw_glass_band(const Shading& s, const TriangleSet& glass, const DrawList& parts,
                      const Projection& projection, int32_t band, int32_t band_rows,
                      const float* inverse_depth) {
     const int32_t first_row = band * band_rows;
-    const int32_t end = first_row + band_rows;
-    const int32_t last_row = (end < projection.height ? end : projection.height) - 1;
-    for (int64_t g = 0; g < glass.segment_count; g++) {
-        const Segment& segment = glass.segments[static_cast<size_t>(g)];
-        for (uint32_t k = segment.starts[static_cast<size_t>(band)];
-             k < segment.starts[static_cast<size_t>(band) + 1]; k++) {
-            const Triangle& t = glass.triangles[segment.entries[k]];
-            const Part& part = parts.parts[t.part];
-            const Planes planes = planes_of(t, part);
-            const int32_t y0 = t.y0 > first_row ? t.y0 : first_row;
-            const int32_t y1 = t.y1 < last_row ? t.y1 : last_row;
-            for (int32_t y = y0; y <= y1; y++) {
-                if (projection.table != nullptr) {
-                    draw_lens_row(s, t, part, planes, projection, y, inverse_depth + y * s.stride);
-                } else {
-                    draw_row(s, t, part, planes, projection, y, inverse_depth + y * s.stride);
-                }
+    const int32_t end_row = first_row + band_rows;
+    const int32_t last_row = (end_row < projection.height ? end_row : projection.height) - 1;
+    for (const uint32_t number : farthest_first(glass, projection, band)) {
+        const Triangle& t = glass.triangles[number];
+        const Part& part = parts.parts[t.part];
+        const Planes planes = planes_of(t, part);
+        const int32_t y0 = t.y0 > first_row ? t.y0 : first_row;
+        const int32_t y1 = t.y1 < last_row ? t.y1 : last_row;
+        for (int32_t y = y0; y <= y1; y++) {
+            if (projection.table != nullptr) {
+                draw_lens_row(s, t, part, planes, projection, y, inverse_depth + y * s.stride);
+            } else {
+                draw_row(s, t, part, planes, projection, y, inverse_depth + y * s.stride);
             }
         }
     }

@@ -143,6 +143,12 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
         make_triangles(threads, scratch, glass, instances, projection, scratch.order.data(),
                        glass.count, true, scratch.glass);
     }
+    GlassEdges& glass_edges = scratch.glass_edges;
+    const bool smooths_glass = glazed && smoothed;
+    if (smooths_glass) {
+        make_triangles(threads, scratch, glass, instances, sampled, nullptr, glass.count, false,
+                       glass_edges.triangles);
+    }
     Shading shading{};
     shading.set = &scratch.opaque;
     shading.parts = &parts;
@@ -169,6 +175,10 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
     if (smoothed) {
         const size_t bands = static_cast<size_t>((rows.end - 1) / band_rows + 1 - first_band);
         scratch.of_bands.resize(std::max(scratch.of_bands.size(), bands));
+        if (smooths_glass) {
+            reserve_glass(glass_edges, int64_t{view.width} * view.height,
+                          static_cast<int64_t>(bands));
+        }
     }
     const auto edges_of = [&](int32_t band) -> BandEdges& {
         return scratch.of_bands[static_cast<size_t>(band - first_band)];
@@ -180,6 +190,10 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
             draw_fine_band(sampled, parts, band, scratch, edges);
             list_edges(shading, first, rows.first + static_cast<int32_t>(end), edges,
                        edges_of(band));
+            if (smooths_glass) {
+                cover_glass_band(shading, glass, sampled, band, first_band, band_rows, edges,
+                                 glass_edges);
+            }
         } else {
             uint32_t* visible = scratch.visible.data() + first * scratch.stride;
             float* inverse_depth = scratch.inverse_depth.data() + first * scratch.stride;
@@ -196,10 +210,35 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
         const int32_t first = rows.first + static_cast<int32_t>(begin), band = first / band_rows;
         shade_band(shading, first, rows.first + static_cast<int32_t>(end));
         if (smoothed) smooth_edges(shading, edges_of(band));
+        if (smooths_glass) {
+            const auto columns = glass_edges.of_bands[static_cast<size_t>(band - first_band)];
+            if (columns.first >= columns.end) return;
+            keep_without_glass(shading, first, rows.first + static_cast<int32_t>(end), columns,
+                               glass_edges);
+        }
         if (glazed) {
             draw_glass_band(shading, scratch.glass, glass, projection, band, band_rows,
                             scratch.inverse_depth.data());
         }
+    });
+    if (!smooths_glass) return;
+    // Neighbours in other bands are looked at: nothing is written before all have been.
+    using Smoothed = std::vector<GlassEdges::Smoothed>;
+    const auto for_glass = [&](const auto& work) {
+        parallel_for(threads, count, band_rows, [&](int64_t begin, int64_t end, int64_t) {
+            const int32_t first = rows.first + static_cast<int32_t>(begin);
+            const size_t number = static_cast<size_t>(first / band_rows - first_band);
+            const auto columns = glass_edges.of_bands[number];
+            if (columns.first >= columns.end) return;
+            work(first, rows.first + static_cast<int32_t>(end), columns,
+                 glass_edges.smoothed[number]);
+        });
+    };
+    for_glass([&](int32_t first, int32_t end, GlassEdges::Columns columns, Smoothed& mixed) {
+        mix_glass(shading, first, end, columns, rows.first, rows.end, glass_edges, mixed);
+    });
+    for_glass([&](int32_t, int32_t, GlassEdges::Columns, const Smoothed& mixed) {
+        take_mixed(shading, mixed);
     });
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "edges.h"
+#include "glass_edges.h"
 #include "shade.h"
 #include "shade_rough.h"
 
@@ -16,6 +17,7 @@ struct DrawingScratch : Scratch {
     std::vector<EdgeScratch> edges;  // of each thread
     std::vector<BandEdges> of_bands;
     RoughSamples rough;
+    GlassEdges glass_edges;
     std::vector<std::unique_ptr<DrawingScratch>> of_slots;  // of threads that draw rows apart
 };
 

@@ -1,0 +1,51 @@
+// Smooth borders of see-through surfaces: how much of a pixel they cover, and the mean of its light
+// with them and without.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "edges.h"
+#include "shade.h"
+
+namespace sailenv {
+
+// What is drawn of see-through surfaces to smooth their borders.
+struct GlassEdges {
+    TriangleSet triangles;          // of fine samples
+    std::vector<uint8_t> covered;   // of each pixel: share, and whether its centre is; see .cpp
+    std::vector<uint16_t> without;  // radiance of the pixels before they are drawn
+    // Columns of each band between which anything is drawn; none of most.
+    struct Columns {
+        int32_t first, end;
+    };
+    std::vector<Columns> of_bands;
+    struct Smoothed {
+        int64_t pixel;
+        uint16_t light[3];
+    };
+    std::vector<std::vector<Smoothed>> smoothed;  // band by band
+};
+
+void reserve_glass(GlassEdges& edges, int64_t pixels, int64_t bands);
+
+// Finds what is covered in a band whose opaque samples are drawn; `band` is counted from
+// `first_band` on in the lists of bands.
+void cover_glass_band(const Shading& shading, const DrawList& glass, const Projection& fine,
+                      int32_t band, int32_t first_band, int32_t band_rows, EdgeScratch& scratch,
+                      GlassEdges& edges);
+
+// Keeps the radiance of rows that glass is to be drawn over, between some columns.
+void keep_without_glass(const Shading& shading, int32_t first_row, int32_t end_row,
+                        GlassEdges::Columns columns, GlassEdges& edges);
+
+// Lists the light of pixels that are partly covered; all bands from `first_row` to `end_row` are
+// drawn. Of a pixel whose centre is not covered the pixels around it tell what glass does there.
+void mix_glass(const Shading& shading, int32_t begin, int32_t end, GlassEdges::Columns columns,
+               int32_t first_row, int32_t end_row, const GlassEdges& edges,
+               std::vector<GlassEdges::Smoothed>& smoothed);
+
+// Writes that light.
+void take_mixed(const Shading& shading, const std::vector<GlassEdges::Smoothed>& smoothed);
+
+}  // namespace sailenv
