@@ -115,7 +115,9 @@ def _sides_m(geometry: StaticGeometry, places: Floats) -> Floats:
     return sides
 
 
-def _is_uneven(scene: RayScene, positions: Floats, faces: Floats, sides: Floats) -> NDArray[np.bool_]:
+def _is_uneven(
+    scene: RayScene, positions: Floats, faces: Floats, sides: Floats
+) -> NDArray[np.bool_]:
     """Return (N,) bool: texels on both sides of whose points something rises."""
     origins = positions + faces * np.float32(RISE_M)
     found = np.zeros(len(positions), bool)
@@ -132,7 +134,8 @@ def _across(faces: Floats) -> tuple[Floats, Floats]:
     """Return two (N, 3) float32 of unit vectors at right angles to normals and to each other."""
     axis = np.where(np.abs(faces[:, 2:]) < 0.7, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
     first = np.cross(axis, faces)
-    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    # Triangles without an area face nowhere.
+    first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-12)
     return first.astype(np.float32), np.cross(faces, first).astype(np.float32)
 
 

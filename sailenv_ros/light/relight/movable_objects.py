@@ -1,4 +1,6 @@
-"""Objects that can move, where they stand, and what stands near. From snapshots to `PlacedObject`.
+"""Objects with light of their own, where they stand, and what stands near.
+
+From snapshots to `PlacedObject`.
 
 Few of many objects move from one snapshot to the next: what is known of the others is kept.
 """
@@ -9,22 +11,41 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.relight.object_light import Place, PlacedObject
+from sailenv_ros.rays.model_triangles import triangles_of
+from sailenv_ros.types.digests import once
+from sailenv_ros.types.model import Model
 from sailenv_ros.types.snapshot import DrawnInstance, WorldSnapshot, steady_poses
 
-__all__ = ["MovableObjects", "can_be_lit"]
+__all__ = ["MovableObjects", "can_be_lit", "casts_shadows"]
+
+DENSE = 0.2
+"""Alpha from which the light on what is seen through shows: of nets, not of panes."""
 
 NEAR_M = 0.25
 """Things whose balls are farther apart neither shade nor light each other [m]."""
 
 
 def can_be_lit(drawn: DrawnInstance) -> bool:
-    """Return whether something can move, and keeps its shape."""
-    moves = not drawn.is_baked and not drawn.deforms and drawn.outside is None
-    return moves and drawn.model.triangle_count > 0
+    """Return whether something has light of its own: it keeps its shape, and has none in the map.
+
+    That is what can move, and nets and other dense sheets that are seen through: maps have nothing
+    of these.
+    """
+    if drawn.deforms or drawn.outside is not None or not drawn.model.triangle_count:
+        return False
+    looks = [part.material for part in drawn.model.parts]
+    clear = all(look.alpha == "blend" and look.base_colour[3] >= DENSE for look in looks)
+    return clear or not drawn.is_baked
+
+
+@once
+def casts_shadows(model: Model) -> bool:
+    """Return whether anything of a model stops light."""
+    return bool((triangles_of(model).passes == 0.0).any())
 
 
 class MovableObjects:
-    """Objects of one scene that can move, at places that small motions do not change.
+    """Objects of one scene that have light of their own, at places that small motions leave.
 
     Attributes
     ----------

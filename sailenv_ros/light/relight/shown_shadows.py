@@ -12,6 +12,7 @@ from typing import TypeAlias
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.found_light import MOST_PLACES
 from sailenv_ros.light.relight.kept_light import kept_light
+from sailenv_ros.light.relight.movable_objects import casts_shadows
 from sailenv_ros.light.relight.moved_surfaces import moved_surfaces
 from sailenv_ros.light.relight.object_light import (
     ObjectLighting,
@@ -66,12 +67,13 @@ class ShownShadows:
         light : BakedLight
             Of the scene with its changes.
         things : sequence of PlacedObject
-            Those that rest.
+            Those that rest; what stops no light has no shadow.
         changes : sequence of Change
             Furniture that counts as standing elsewhere.
         threads : int
             The result does not depend on it.
         """
+        things = [thing for thing in things if casts_shadows(thing.model)]
         shadows, moved = self._follow({one.id: (one.place, one) for one in things}, threads)
         key = tuple(change.key for change in changes)
         if moved or (self._changed is not None and self._changed[0] != key):

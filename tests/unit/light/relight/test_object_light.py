@@ -14,7 +14,7 @@ from sailenv_ros.light.relight import object_lights as module
 from sailenv_ros.light.relight.baked_scene import albedo_of_model
 from sailenv_ros.light.relight.movable_objects import MovableObjects
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
-from sailenv_ros.light.relight.object_lights import ObjectLights
+from sailenv_ros.light.relight.object_lights import ObjectLights, with_object_light
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.geometry import Pose
@@ -259,6 +259,38 @@ def test_only_what_can_move_and_keeps_its_shape_is_lit() -> None:
     seen = movable_objects(replace(snapshot, contents=replace(contents, instances=instances)))
     assert [thing.id for thing in seen] == [2]
     assert isinstance(seen[0], PlacedObject)
+
+
+def still(snapshot: WorldSnapshot, row: int) -> WorldSnapshot:
+    """The same with a thing that cannot move."""
+    contents = snapshot.contents
+    instances = list(contents.instances)
+    instance = replace(instances[row].instance, static=True)
+    instances[row] = replace(instances[row], instance=instance)
+    return replace(snapshot, contents=replace(contents, instances=tuple(instances)))
+
+
+def test_each_side_of_a_net_that_stands_still_has_its_own_light() -> None:
+    """A lamp before it: the light map has nothing of a net, and it casts no shadow."""
+    net = model_of(box_mesh((0.01, 0.8, 0.8)), base_colour=(1.0, 1.0, 1.0, 0.4), alpha="blend")
+    lamp = replace(LAMP, position_m=(0.9, 0.0, 1.0))
+    snapshot = still(room((net, IN_THE_AIR), lights=(lamp,)), 1)
+    scene = scene_of(snapshot)
+    lit = with_object_light(snapshot, scene, 1)
+    light = lit.object_light[2]
+    front = value(light, light.direct[1], (1, 0, 0), (0.0, 0.0, 1.0))
+    back = value(light, light.direct[1], (-1, 0, 0), (0.0, 0.0, 1.0))
+    assert front == pytest.approx(1.0 / (np.pi * 0.81), rel=0.25)
+    assert abs(back) < 0.05 * front
+    assert lit.contents.baked is not None
+    assert not lit.contents.baked.casters
+
+
+@pytest.mark.parametrize(("alpha", "own"), [(0.1, False), (0.4, True), (1.0, False)])
+def test_what_a_map_has_and_clear_panes_have_no_light_of_their_own(alpha: float, own: bool) -> None:
+    kind = "opaque" if alpha == 1.0 else "blend"
+    sheet = model_of(box_mesh(0.2), base_colour=(1.0, 1.0, 1.0, alpha), alpha=kind)
+    assert bool(movable_objects(still(room((sheet, IN_THE_AIR)), 1))) is own
 
 
 def test_what_stands_still_is_the_same_object_from_snapshot_to_snapshot() -> None:
