@@ -124,9 +124,7 @@ def _points(areas: Doubles) -> tuple[NDArray[np.intp], Doubles]:
     return owners, np.where(alone, 1.0 / 3.0, weights)
 
 
-def _hidden_at(
-    triangles: ModelTriangles, owners: NDArray[np.intp], weights: Doubles
-) -> Doubles:
+def _hidden_at(triangles: ModelTriangles, owners: NDArray[np.intp], weights: Doubles) -> Doubles:
     """Return (P,) the share of light that the model itself keeps from each point."""
     corners, normals = triangles.corners.astype(np.float64), triangles.normals.astype(np.float64)
     passes = triangles.passes

@@ -200,6 +200,32 @@ def test_borders_of_glass_are_smooth(turn: float) -> None:
     assert np.abs(error[inner]).max() < 0.02
 
 
+def test_narrow_folds_of_a_net_are_not_dashed() -> None:
+    """A strip of a third of a pixel before a sheet of the same cloth, a little out of plumb."""
+    look = {"base_colour": (0, 0, 0, 0.4), "alpha": "blend", "roughness": 1.0}
+    sheet = Thing(model_of(WALL, **look), Pose((2.2, 0, 0)))
+    eye = replace(camera_at(), picture=replace(PLAIN, smooth_edges=True))
+    pixel = 2.0 / eye.intrinsics.fx
+    strip = Thing(
+        model_of(wall_mesh(pixel / 3.0, 30.0), **look),
+        Pose.from_rpy_deg((2.0, 0.0, 0.0), (2.0, 0, 0)),
+    )
+    environment = replace(UNIFORM, background="colour", background_colour=GREY)
+    renderer = NativeRenderer()
+    try:
+        scene = snapshot_of([sheet, strip], lights=(), environment=environment)
+        rgb = renderer.render(RenderRequest(scene, eye, ("rgb",))).views["rgb"]
+    finally:
+        renderer.close()
+    light = LINEAR_OF_SRGB8[rgb[8:-8, :, 1]]
+    taken = (light[:, :10].mean() - light).clip(0.0).sum(axis=1)
+    # Black cloth lets (1 - a)(1 - a) through; it covers a third of a pixel.
+    whole = light[:, :10].mean() * (1.0 - 0.6 * 0.6) / 3.0
+    assert taken.mean() == pytest.approx(whole, rel=0.1)
+    assert taken.min() > 0.5 * whole
+    assert taken.max() < 1.6 * whole
+
+
 def test_the_far_wall_of_a_vessel_comes_first() -> None:
     """Triangles of one part are drawn by their distance, not in the order of the mesh."""
     near, far = wall_mesh(30.0, 30.0), wall_mesh(30.0, 30.0)

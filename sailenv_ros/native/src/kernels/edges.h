@@ -12,7 +12,8 @@ namespace sailenv {
 // Memory of a thread for one band of fine samples.
 struct EdgeScratch {
     std::vector<uint32_t> visible;  // as in `Scratch`, of fine samples
-    std::vector<float> inverse_depth, glazed;  // of opaque surfaces, and with others
+    std::vector<float> inverse_depth;
+    std::vector<float> nearest, through;  // what glass needs; see `draw_layers`
     int64_t stride = 0;
 };
 

@@ -8,12 +8,14 @@
 namespace sailenv {
 namespace {
 
-// Sixteenths of a pixel that its fine samples stand for. Of those at its corners the one above and
-// to the left lies inside, see SAMPLE_SHIFT; in each direction all together are a quarter apart.
-constexpr int CENTRE = 4, SIDE = 2, CORNER = 4, WHOLE = 16;
+// Shares of a pixel that its fine samples stand for. Of those at its corners the one above and to
+// the left lies inside, see SAMPLE_SHIFT; in each direction all together are a quarter apart.
+constexpr float CENTRE = 0.25f, SIDE = 0.125f, CORNER = 0.25f;
 
-// Says of a pixel that its centre is covered.
-constexpr int AT_CENTRE = 0x80;
+constexpr float MIRRORED = 0.08f;  // of glass, however clear: it is seen by that, too
+constexpr float WHOLE = 65535.0f;
+constexpr int ALIKE = 64;        // difference of densities that is not seen
+constexpr float MOST_TIMES = 4;  // a sliver at a centre tells little of the pixel
 
 // The columns of pixels that the triangles of a band may touch.
 GlassEdges::Columns columns_of(const TriangleSet& set, int32_t band, int32_t width) {
@@ -31,9 +33,17 @@ GlassEdges::Columns columns_of(const TriangleSet& set, int32_t band, int32_t wid
     return {std::max(first - 1, 0) / 2, std::min(last / 2 + 1, width)};
 }
 
-// 1 of every second of eight fine samples that glass covers.
-LANES_INLINE i8 covers(const float* nearest, const float* opaque) {
-    return (every_second(nearest) > every_second(opaque)) & 1;
+// What a part lets through, on average over the colours; see glass.cpp.
+float passes_of(const Part& part) {
+    const float alpha = part.colour[3];
+    float most = 0.0f, sum = 0.0f;
+    for (int c = 0; c < 3; c++) {
+        most = std::max(most, part.colour[c] * part.colour[c]);
+        sum += part.colour[c] * part.colour[c];
+    }
+    const float hue = sum / (3.0f * std::max(most, 1e-3f));
+    const float kept = part.roughness < LEAST_CLOTH ? MIRRORED : 0.0f;
+    return (1.0f - kept) * (1.0f - alpha) * (1.0f + alpha * (hue - 1.0f));
 }
 
 float value_of(uint16_t half) { return from_half(splat(static_cast<int32_t>(half)))[0]; }
@@ -42,53 +52,61 @@ uint16_t half_of(float value) { return static_cast<uint16_t>(to_half(splat(value
 
 }  // namespace
 
-void reserve_glass(GlassEdges& edges, int64_t pixels, int64_t bands) {
+void reserve_glass(GlassEdges& edges, const DrawList& glass, int64_t pixels, int64_t bands) {
     const size_t count = static_cast<size_t>(pixels), lists = static_cast<size_t>(bands);
-    if (edges.covered.size() < count) {
-        edges.covered.resize(count);
+    if (edges.densities.size() < count) {
+        edges.densities.resize(count);
         edges.without.resize(4 * count);
     }
     if (edges.of_bands.size() < lists) {
         edges.of_bands.resize(lists);
         edges.smoothed.resize(lists);
     }
+    edges.passes.resize(static_cast<size_t>(glass.count));
+    for (int64_t k = 0; k < glass.count; k++) {
+        const Part& part = glass.parts[k];
+        edges.passes[static_cast<size_t>(k)] = passes_of(part);
+    }
 }
 
-void cover_glass_band(const Shading& s, const DrawList& glass, const Projection& fine, int32_t band,
-                      int32_t first_band, int32_t band_rows, EdgeScratch& scratch,
-                      GlassEdges& edges) {
+void find_densities(const Shading& s, const DrawList& glass, const Projection& fine, int32_t band,
+                    int32_t first_band, int32_t band_rows, EdgeScratch& scratch,
+                    GlassEdges& edges) {
     const int32_t width = static_cast<int32_t>(s.width);
     GlassEdges::Columns& columns = edges.of_bands[static_cast<size_t>(band - first_band)];
     columns = columns_of(edges.triangles, band, width);
     const RowRange rows = rows_of_band(fine, band, band_rows);
-    memset(edges.covered.data() + rows.first / 2 * s.width, 0,
-           static_cast<size_t>((rows.last / 2 - rows.first / 2) * s.width));
+    std::fill(edges.densities.data() + rows.first / 2 * s.width,
+              edges.densities.data() + rows.last / 2 * s.width, Density{0, 0});
     if (columns.first >= columns.end) return;
-    scratch.glazed.resize(scratch.inverse_depth.size());
-    float* nearest = scratch.glazed.data();
+    scratch.nearest.resize(scratch.inverse_depth.size());
+    scratch.through.resize(scratch.inverse_depth.size());
+    float *nearest = scratch.nearest.data(), *through = scratch.through.data();
     const float* opaque = scratch.inverse_depth.data();
-    // Loads of the last eight pixels read as many samples more.
+    // Triangles are drawn in eights, and of the last pixels as many samples more are read.
     const int64_t stride = scratch.stride, first = 2 * static_cast<int64_t>(columns.first);
     const int64_t count = std::min(2 * static_cast<int64_t>(columns.end) + 24, stride) - first;
     for (int64_t row = 0; row <= rows.last - rows.first; row++) {
         memcpy(nearest + row * stride + first, opaque + row * stride + first,
                static_cast<size_t>(count) * sizeof *nearest);
+        std::fill_n(through + row * stride + first, count, 1.0f);
     }
-    draw_band(edges.triangles, glass, fine, band, band_rows, stride, nullptr, nearest);
+    draw_layers(edges.triangles, glass, fine, band, band_rows, stride, opaque, nearest, through,
+                edges.passes.data());
     for (int64_t row = rows.first + 1; row < rows.last; row += 2) {
-        const int64_t from = (row - rows.first) * stride + 1;
-        uint8_t* to = edges.covered.data() + row / 2 * s.width;
+        const float* from = through + (row - rows.first) * stride + 1;
+        Density* to = edges.densities.data() + row / 2 * s.width;
         for (int32_t x = columns.first; x < columns.end; x += 8) {
             const auto at = [&](int64_t offset) {
-                const int64_t place = from + 2 * static_cast<int64_t>(x) + offset;
-                return covers(nearest + place, opaque + place);
+                return every_second(from + 2 * static_cast<int64_t>(x) + offset);
             };
-            const i8 centre = at(0);
-            const i8 sides = at(-stride) + at(stride) + at(-1) + at(1);
-            const i8 found =
-                CENTRE * centre + CORNER * at(-stride - 1) + SIDE * sides + AT_CENTRE * centre;
+            const f8 centre = at(0);
+            const f8 sides = at(-stride) + at(stride) + at(-1) + at(1);
+            const f8 mean = CENTRE * centre + CORNER * at(-stride - 1) + SIDE * sides;
+            const i8 dense = truncated(WHOLE * (1.0f - mean) + 0.5f);
+            const i8 own = truncated(WHOLE * (1.0f - centre) + 0.5f);
             for (int32_t k = 0; k < std::min(8, columns.end - x); k++) {
-                to[x + k] = static_cast<uint8_t>(found[k]);
+                to[x + k] = {static_cast<uint16_t>(dense[k]), static_cast<uint16_t>(own[k])};
             }
         }
     }
@@ -112,32 +130,38 @@ void mix_glass(const Shading& s, int32_t begin, int32_t end, GlassEdges::Columns
     for (int32_t y = begin; y < end; y++) {
         for (int32_t x = columns.first; x < columns.end; x++) {
             const int64_t pixel = static_cast<int64_t>(y) * s.width + x;
-            const int own = edges.covered[static_cast<size_t>(pixel)];
-            const int share = own & ~AT_CENTRE;
-            if (share == 0 || share == WHOLE) continue;
+            const Density own = edges.densities[static_cast<size_t>(pixel)];
+            if (std::abs(own.mean - own.centre) < ALIKE) continue;
+            // What glass adds or takes away where it is as dense as can be: at the centre, unless
+            // that meets nothing or an edge that is denser than most of the pixel, else beside it.
             float change[3] = {};
             int count = 0;
-            const auto add = [&](int64_t at) {
-                count++;
+            const auto add = [&](int64_t at, uint16_t dense) {
+                const float scale = WHOLE / static_cast<float>(dense);
                 for (int64_t c = 4 * at; c < 4 * at + 3; c++) {
-                    change[c - 4 * at] += value_of(with[c]) - value_of(without[c]);
+                    change[c - 4 * at] += scale * (value_of(with[c]) - value_of(without[c]));
                 }
+                count++;
             };
-            if ((own & AT_CENTRE) != 0) {
-                add(pixel);
-            } else {
+            const int most = own.centre >= ALIKE ? own.mean + own.mean / 8 : 65535;
+            if (own.centre > most || own.centre < ALIKE) {
                 for (int32_t row = std::max(y - 1, first_row); row < std::min(y + 2, end_row);
                      row++) {
                     for (int32_t at = std::max(x - 1, 0); at < std::min(x + 2, width); at++) {
                         const int64_t beside = static_cast<int64_t>(row) * s.width + at;
-                        if ((edges.covered[static_cast<size_t>(beside)] & AT_CENTRE) != 0) {
-                            add(beside);
+                        const Density other = edges.densities[static_cast<size_t>(beside)];
+                        if (other.centre >= ALIKE && other.centre <= most) {
+                            add(beside, other.centre);
                         }
                     }
                 }
             }
+            if (count == 0 && own.centre >= ALIKE) add(pixel, own.centre);
             if (count == 0) continue;
-            const float weight = static_cast<float>(share) / static_cast<float>(WHOLE * count);
+            float weight = static_cast<float>(own.mean) / (WHOLE * static_cast<float>(count));
+            if (own.centre >= ALIKE) {
+                weight = std::min(weight, MOST_TIMES * static_cast<float>(own.centre) / WHOLE);
+            }
             GlassEdges::Smoothed mixed{pixel, {}};
             for (int c = 0; c < 3; c++) {
                 const float sum = value_of(without[4 * pixel + c]) + weight * change[c];

@@ -728,37 +728,75 @@ void read_places(const LensTable& lens, const RowRange& rows) {
     }
 }
 
-void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
-               int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible,
-               float* inverse_depth) {
-    const RowRange rows = rows_of_band(projection, band, band_rows);
-    const int64_t before = rows.first * stride;
-    uint32_t* seen = visible == nullptr ? nullptr : visible - before;
-    const bool bends = projection.table != nullptr;
-    if (bends) read_places(*projection.table, rows);
-    const auto plain = bends             ? draw_through_lens
-                       : projection.fine ? draw_triangle<false, true>
-                                         : draw_triangle<false, false>;
-    const auto masked = bends             ? draw_through_lens
-                        : projection.fine ? draw_triangle<true, true>
-                                          : draw_triangle<true, false>;
+// Draws one triangle into rows of samples; see `draw_triangle`.
+using Draw = void (*)(const Triangle&, uint32_t, const Part&, const Projection&, int32_t, int32_t,
+                      int64_t, uint32_t*, float*);
+
+Draw drawing_of(const Projection& projection, bool masked) {
+    if (projection.table != nullptr) return draw_through_lens;
+    if (projection.fine) return masked ? draw_triangle<true, true> : draw_triangle<false, true>;
+    return masked ? draw_triangle<true, false> : draw_triangle<false, false>;
+}
+
+// Calls use(number) for all triangles of a band, in their order.
+template <class Use>
+void for_triangles(const TriangleSet& set, int32_t band, const Use& use) {
     for (int64_t s = 0; s < set.segment_count; s++) {
         const Segment& segment = set.segments[static_cast<size_t>(s)];
         const uint32_t begin = segment.starts[static_cast<size_t>(band)];
         const uint32_t end = segment.starts[static_cast<size_t>(band) + 1];
         const uint32_t* entries = segment.entries.data();
         for (uint32_t k = begin; k < end; k++) {
-            const uint32_t number = entries[k];
             const char* ahead = reinterpret_cast<const char*>(
                 set.triangles.data() + entries[k + 8 < end ? k + 8 : end - 1]);
             __builtin_prefetch(ahead);
             __builtin_prefetch(ahead + 64);
-            const Triangle& t = set.triangles[number];
-            const auto draw = t.masked ? masked : plain;
-            draw(t, number, parts.parts[t.part], projection, rows.first, rows.last, stride, seen,
-                 inverse_depth - before);
+            use(entries[k]);
         }
     }
+}
+
+void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
+               int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible,
+               float* inverse_depth) {
+    const RowRange rows = rows_of_band(projection, band, band_rows);
+    const int64_t before = rows.first * stride;
+    uint32_t* seen = visible == nullptr ? nullptr : visible - before;
+    if (projection.table != nullptr) read_places(*projection.table, rows);
+    const Draw plain = drawing_of(projection, false), masked = drawing_of(projection, true);
+    for_triangles(set, band, [&](uint32_t number) {
+        const Triangle& t = set.triangles[number];
+        const Draw draw = t.masked ? masked : plain;
+        draw(t, number, parts.parts[t.part], projection, rows.first, rows.last, stride, seen,
+             inverse_depth - before);
+    });
+}
+
+void draw_layers(const TriangleSet& set, const DrawList& parts, const Projection& projection,
+                 int32_t band, int32_t band_rows, int64_t stride, const float* inverse_depth,
+                 float* nearest, float* through, const float* of_parts) {
+    const RowRange rows = rows_of_band(projection, band, band_rows);
+    const int64_t before = rows.first * stride;
+    const Draw draw = drawing_of(projection, false);
+    for_triangles(set, band, [&](uint32_t number) {
+        const Triangle& t = set.triangles[number];
+        draw(t, number, parts.parts[t.part], projection, rows.first, rows.last, stride, nullptr,
+             nearest - before);
+        const float share = of_parts[t.part];
+        const int32_t y0 = std::max<int32_t>(t.y0, rows.first);
+        const int32_t y1 = std::min<int32_t>(t.y1, rows.last);
+        for (int64_t row = y0; row <= y1; row++) {
+            const int64_t first = (row - rows.first) * stride;
+            // Fine samples are drawn from an even column on.
+            for (int64_t x = t.x0 & ~1; x <= t.x1; x += 8) {
+                const f8 opaque = load(inverse_depth + first + x);
+                const f8 before_it = load(through + first + x);
+                const i8 drawn = load(nearest + first + x) > opaque;
+                store(through + first + x, drawn ? before_it * share : before_it);
+                store(nearest + first + x, opaque);
+            }
+        }
+    });
 }
 
 void draw_window(const TriangleSet& set, const DrawList& parts, const Projection& projection,

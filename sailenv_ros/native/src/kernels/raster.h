@@ -154,6 +154,12 @@ void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& 
                int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible,
                float* inverse_depth);
 
+// Multiplies `through`, of each sample of a band, by `of_parts` for each triangle before what is
+// opaque there. `nearest` begins and ends as a copy of `inverse_depth`.
+void draw_layers(const TriangleSet& set, const DrawList& parts, const Projection& projection,
+                 int32_t band, int32_t band_rows, int64_t stride, const float* inverse_depth,
+                 float* nearest, float* through, const float* of_parts);
+
 // Draws all triangles of a set into the window of a projection, whose first pixel is the first
 // number of `inverse_depth`. Rows of the window are followed by room for eight numbers.
 void draw_window(const TriangleSet& set, const DrawList& parts, const Projection& projection,

@@ -176,7 +176,7 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
         const size_t bands = static_cast<size_t>((rows.end - 1) / band_rows + 1 - first_band);
         scratch.of_bands.resize(std::max(scratch.of_bands.size(), bands));
         if (smooths_glass) {
-            reserve_glass(glass_edges, int64_t{view.width} * view.height,
+            reserve_glass(glass_edges, glass, int64_t{view.width} * view.height,
                           static_cast<int64_t>(bands));
         }
     }
@@ -191,8 +191,8 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
             list_edges(shading, first, rows.first + static_cast<int32_t>(end), edges,
                        edges_of(band));
             if (smooths_glass) {
-                cover_glass_band(shading, glass, sampled, band, first_band, band_rows, edges,
-                                 glass_edges);
+                find_densities(shading, glass, sampled, band, first_band, band_rows, edges,
+                               glass_edges);
             }
         } else {
             uint32_t* visible = scratch.visible.data() + first * scratch.stride;
