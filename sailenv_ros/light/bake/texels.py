@@ -119,7 +119,7 @@ def normals_at(
     faces: NDArray[np.float32],
 ) -> NDArray[np.float32]:
     """Return (N, 3) float32: normals of the smooth surface at points, to the side of `faces`."""
-    normals = np.einsum("nc,ncx->nx", weights, geometry.normals[triangles])
+    normals: NDArray[np.float32] = np.einsum("nc,ncx->nx", weights, geometry.normals[triangles])
     normals *= np.sign(np.einsum("nx,nx->n", faces, geometry.faces[triangles]))[:, None]
     # Normals that point through their own triangle are none.
     through = np.einsum("nx,nx->n", normals, faces) < 0.05

@@ -25,7 +25,7 @@ __all__ = ["with_typical_points"]
 Floats = NDArray[np.float32]
 
 RISE_M = 2e-3
-"""What rises less above a texel's point is no relief [m]."""
+"""Height above a texel's point from which anything counts as relief [m]."""
 
 REACH = 0.8
 """Relief counts this near to a texel's point [sides of a texel]."""
@@ -37,7 +37,7 @@ DIRECTIONS = fibonacci_sphere(64)
 """Half of them lie above any surface."""
 
 INSIDE = 0.1
-"""A point that sees less than this share lies under something, or as good as that."""
+"""A point that sees less than this share lies under something, or nearly."""
 
 ALIKE = 0.08
 """Greatest difference of openness from the mean at which the middle of a texel stands for it."""
@@ -219,4 +219,5 @@ def _openness(scene: RayScene, points: _Points, sides: Floats) -> NDArray[np.flo
         passed = scene.share_that_passes(origins[above], towards, reach[above]) > 0.0
         seen[above] += cosine[above] * passed
         weight[above] += cosine[above]
-    return (seen / np.maximum(weight, 1e-9)).reshape(shape)
+    shares: NDArray[np.float64] = seen / np.maximum(weight, 1e-9)
+    return shares.reshape(shape)

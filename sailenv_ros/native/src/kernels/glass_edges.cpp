@@ -14,8 +14,7 @@ constexpr float CENTRE = 0.25f, SIDE = 0.125f, CORNER = 0.25f;
 
 constexpr float MIRRORED = 0.08f;  // of glass, however clear: it is seen by that, too
 constexpr float WHOLE = 65535.0f;
-constexpr int ALIKE = 64;        // difference of densities that is not seen
-constexpr float MOST_TIMES = 4;  // a sliver at a centre tells little of the pixel
+constexpr int ALIKE = 64;  // difference of densities that is not seen
 
 // The columns of pixels that the triangles of a band may touch.
 GlassEdges::Columns columns_of(const TriangleSet& set, int32_t band, int32_t width) {
@@ -49,6 +48,46 @@ float passes_of(const Part& part) {
 float value_of(uint16_t half) { return from_half(splat(static_cast<int32_t>(half)))[0]; }
 
 uint16_t half_of(float value) { return static_cast<uint16_t>(to_half(splat(value))[0]); }
+
+// What glass does to pixels, as if it were as dense as can be: it dims what lies behind, by a
+// share, or adds light.
+struct Change {
+    float dims[3] = {}, adds[3] = {};
+    int count = 0;
+
+    void add(const uint16_t* with, const uint16_t* without, int dense) {
+        const float scale = WHOLE / static_cast<float>(dense);
+        for (int c = 0; c < 3; c++) {
+            const float before = value_of(without[c]);
+            const float change = scale * (value_of(with[c]) - before);
+            (change < 0.0f ? dims : adds)[c] += change < 0.0f ? change / before : change;
+        }
+        count++;
+    }
+
+    float at(int dense, float before, int c) const {
+        const float weight = static_cast<float>(dense) / (WHOLE * static_cast<float>(count));
+        return std::max((1.0f + weight * dims[c]) * before + weight * adds[c], 0.0f);
+    }
+};
+
+// The light of some pixels.
+struct Range {
+    float low[3], high[3];
+
+    explicit Range(const uint16_t* light) {
+        for (int c = 0; c < 3; c++) low[c] = high[c] = value_of(light[c]);
+    }
+
+    void add(const uint16_t* light) {
+        for (int c = 0; c < 3; c++) {
+            low[c] = std::min(low[c], value_of(light[c]));
+            high[c] = std::max(high[c], value_of(light[c]));
+        }
+    }
+
+    float nearest(float light, int c) const { return std::min(std::max(light, low[c]), high[c]); }
+};
 
 }  // namespace
 
@@ -132,40 +171,32 @@ void mix_glass(const Shading& s, int32_t begin, int32_t end, GlassEdges::Columns
             const int64_t pixel = static_cast<int64_t>(y) * s.width + x;
             const Density own = edges.densities[static_cast<size_t>(pixel)];
             if (std::abs(own.mean - own.centre) < ALIKE) continue;
-            // What glass adds or takes away where it is as dense as can be: at the centre, unless
-            // that meets nothing or an edge that is denser than most of the pixel, else beside it.
-            float change[3] = {};
-            int count = 0;
-            const auto add = [&](int64_t at, uint16_t dense) {
-                const float scale = WHOLE / static_cast<float>(dense);
-                for (int64_t c = 4 * at; c < 4 * at + 3; c++) {
-                    change[c - 4 * at] += scale * (value_of(with[c]) - value_of(without[c]));
-                }
-                count++;
-            };
-            const int most = own.centre >= ALIKE ? own.mean + own.mean / 8 : 65535;
-            if (own.centre > most || own.centre < ALIKE) {
+            // Its centre tells what glass does there, unless that meets nothing or an edge that is
+            // denser than most of the pixel; then those around it do.
+            const bool elsewhere = own.centre < ALIKE || own.centre > own.mean + own.mean / 8;
+            const int most = own.centre < ALIKE ? 65535 : own.mean + own.mean / 8;
+            Change change;
+            Range range(without + 4 * pixel);
+            if (elsewhere) {
                 for (int32_t row = std::max(y - 1, first_row); row < std::min(y + 2, end_row);
                      row++) {
                     for (int32_t at = std::max(x - 1, 0); at < std::min(x + 2, width); at++) {
                         const int64_t beside = static_cast<int64_t>(row) * s.width + at;
-                        const Density other = edges.densities[static_cast<size_t>(beside)];
-                        if (other.centre >= ALIKE && other.centre <= most) {
-                            add(beside, other.centre);
-                        }
+                        range.add(with + 4 * beside);
+                        const int dense = edges.densities[static_cast<size_t>(beside)].centre;
+                        if (dense < ALIKE || dense > most) continue;
+                        change.add(with + 4 * beside, without + 4 * beside, dense);
                     }
                 }
             }
-            if (count == 0 && own.centre >= ALIKE) add(pixel, own.centre);
-            if (count == 0) continue;
-            float weight = static_cast<float>(own.mean) / (WHOLE * static_cast<float>(count));
-            if (own.centre >= ALIKE) {
-                weight = std::min(weight, MOST_TIMES * static_cast<float>(own.centre) / WHOLE);
-            }
+            const bool alone = change.count == 0;
+            if (alone && own.centre < ALIKE) continue;
+            if (alone) change.add(with + 4 * pixel, without + 4 * pixel, own.centre);
             GlassEdges::Smoothed mixed{pixel, {}};
             for (int c = 0; c < 3; c++) {
-                const float sum = value_of(without[4 * pixel + c]) + weight * change[c];
-                mixed.light[c] = half_of(std::max(sum, 0.0f));
+                const float light = change.at(own.mean, value_of(without[4 * pixel + c]), c);
+                // Where surfaces beside are turned otherwise, densities tell little.
+                mixed.light[c] = half_of(elsewhere ? range.nearest(light, c) : light);
             }
             smoothed.push_back(mixed);
         }

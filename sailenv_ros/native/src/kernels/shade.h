@@ -62,8 +62,9 @@ Vec3x8 light_of_instances(const Light& light, i8 ids, i8 wanted, Vec3x8 normal, 
 // Points and directions in the world frame.
 Vec3x8 mirrored_room(const Light& light, i8 point, Vec3x8 at, Vec3x8 direction, f8 roughness);
 
-// What eight pixels of glass mirror, by a ray for each four of them; what they mirror of pictures
-// of the room where nothing is met. `distance` is how far they are from the eye [m].
+// What eight pixels of glass mirror, by rays at both ends and between where these differ; what they
+// mirror of pictures of the room where nothing is met. `distance` is how far they are from the eye
+// [m].
 Vec3x8 trace_glass(const Shading& shading, Vec3x8 point, Vec3x8 direction, f8 distance, i8 wanted,
                    Vec3x8 mirrored);
 

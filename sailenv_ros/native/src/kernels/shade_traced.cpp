@@ -29,6 +29,8 @@ constexpr float LEAST_SHARE = 0.25f, WHOLE_SHARE = 0.4f;
 constexpr float MORE_OF_ROUGH = 0.2f;
 // Of samples at edges, which lie anywhere: angle between the mirrored rays of pixels [rad].
 constexpr float USUAL_ANGLE = 0.004f;
+// What glass mirrors at both ends of eight pixels: what lies between differs no more.
+constexpr float EVEN_SHARE = 0.1f;
 
 // Where the lobe is wide, some pixels of every second row look along rays of it, the fewer the
 // wider it is; those around share what these meet. Where much is mirrored sharply, each pixel has
@@ -375,30 +377,68 @@ void trace_reflections(const Shading& s, Chunk& c, TracedRow* before) {
     before->y = c.y;
 }
 
-Vec3x8 trace_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, i8 wanted,
-                   Vec3x8 mirrored) {
+// What some of eight rays from glass met.
+struct GlassHits {
+    uint32_t met = 0;  // bits of those that met anything
+    vec3 light[8];
+};
+
+namespace {
+
+void look_from_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, uint32_t lanes,
+                     GlassHits& found) {
     Chunk hits;
     begin_hits(hits);
-    int32_t groups[2], count = 0;
-    for (int32_t group = 0; group < 8; group += 4) {
-        int32_t k = group;
-        while (k < group + 4 && !wanted[k]) k++;
-        if (k == group + 4) continue;
+    int32_t of[8], count = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const int32_t k = __builtin_ctz(lanes);
         const vec3 begin(point.x[k], point.y[k], point.z[k]);
         const vec3 along(ray.x[k], ray.y[k], ray.z[k]);
         const SceneHit met = closest_hit(*s.light->traced, begin, along, ENDLESS);
         if (!is_drawn(met)) continue;
         set_hit(met, begin, along, distance[k], USUAL_ANGLE, hits, count);
-        groups[count++] = group;
+        of[count++] = k;
     }
-    if (count == 0) return mirrored;
+    if (count == 0) return;
     shade_hits(s, hits, count);
     for (int32_t j = 0; j < count; j++) {
-        for (int32_t k = groups[j]; k < groups[j] + 4; k++) {
-            mirrored.x[k] = hits.light.x[j];
-            mirrored.y[k] = hits.light.y[j];
-            mirrored.z[k] = hits.light.z[j];
+        found.met |= 1u << of[j];
+        found.light[of[j]] = vec3(hits.light.x[j], hits.light.y[j], hits.light.z[j]);
+    }
+}
+
+// Whether what lies between two rays may be neither one's nor between theirs.
+bool differ(const GlassHits& found, int32_t first, int32_t last) {
+    const uint32_t both = 1u << first | 1u << last;
+    if ((found.met & both) != both) return (found.met & both) != 0;
+    const float a = luminance(found.light[first]), b = luminance(found.light[last]);
+    return std::fabs(a - b) > EVEN_SHARE * max(a, b);
+}
+
+}  // namespace
+
+Vec3x8 trace_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, i8 wanted,
+                   Vec3x8 mirrored) {
+    const uint32_t lanes = lane_bits(wanted);
+    if (lanes == 0) return mirrored;
+    const int32_t first = __builtin_ctz(lanes), last = 31 - __builtin_clz(lanes);
+    const uint32_t ends = 1u << first | 1u << last;
+    GlassHits found;
+    look_from_glass(s, point, ray, distance, ends, found);
+    const bool edge = differ(found, first, last);
+    if (edge) look_from_glass(s, point, ray, distance, lanes & ~ends, found);
+    if (found.met == 0) return mirrored;
+    const float part = 1.0f / static_cast<float>(std::max(last - first, 1));
+    for (int32_t k = first; k <= last; k++) {
+        vec3 light = found.light[k];
+        if ((found.met >> k & 1u) == 0) {
+            if (edge) continue;
+            light =
+                mix(found.light[first], found.light[last], part * static_cast<float>(k - first));
         }
+        mirrored.x[k] = light.x;
+        mirrored.y[k] = light.y;
+        mirrored.z[k] = light.z;
     }
     return mirrored;
 }
