@@ -128,6 +128,30 @@ def test_a_pane_mirrors_with_both_of_its_faces(native: NativeRenderer) -> None:
     np.testing.assert_allclose(around(with_lamp, seen), expected, rtol=0.1)
 
 
+def test_edges_in_a_pane_are_where_optics_says(native: NativeRenderer) -> None:
+    """The side of a slanted box, row by row: no steps of several pixels."""
+    pane = Thing(
+        model_of(
+            wall_mesh(4.0, 4.0), base_colour=(1.0, 1.0, 1.0, 0.0), alpha="blend", roughness=0.05
+        ),
+        Pose((3.0, 0.0, 0.0)),
+    )
+    bright = model_of(box_mesh(1.2), base_colour=(0.0, 0.0, 0.0, 1.0), emission=(9.0, 9.0, 9.0))
+    turn = 20.0
+    box = Thing(bright, Pose.from_rpy_deg((-1.0, 0.7, 0.0), (turn, 0.0, 0.0)))
+    light = linear(picture(native, pane, box, width=320))[..., 1]
+    lens = camera(320).intrinsics
+    # The right side of its front, 6.4 m of light's way off.
+    rows = np.arange(lens.height)
+    rows = rows[np.abs(lens.cy - rows) / lens.fy * 6.4 < 0.3]
+    z = (lens.cy - rows) / lens.fy * 6.4
+    y = 0.7 - (0.6 + np.sin(np.radians(turn)) * z) / np.cos(np.radians(turn))
+    expected = lens.cx - lens.fx * y / 6.4
+    found = np.array([np.flatnonzero(light[row] > 0.3)[-1] for row in rows])
+    assert len(rows) > 10
+    np.testing.assert_allclose(found + 0.5, expected, atol=1.0)
+
+
 ROUGH = 0.4
 ROUGH_METAL = Thing(
     model_of(box_mesh((1.0, 2.0, 2.0)), base_colour=(*TINT, 1.0), metallic=1.0, roughness=ROUGH),
