@@ -194,13 +194,14 @@ def _between(
     other = useful & (points.triangle == nearest.triangle[:, None])
     other &= (more * own[:, None] < 0.0) & (away < BESIDE * sides[:, None])
     second = np.argmin(np.where(other, np.abs(more), np.inf), axis=1)
-    rest = more[every, second]
-    share = np.where(other.any(axis=1), own / np.where(own == rest, 1.0, own - rest), 0.0)
+    across = own - more[every, second]
+    share = np.where(other.any(axis=1), own / np.where(across == 0.0, 1.0, across), 0.0)
     share = share.astype(np.float32)[:, None]
 
     def mixed(array: Floats) -> Floats:
-        first: Floats = array[every, best]
-        return first + share * (array[every, second] - first)
+        first, rest = array[every, best], array[every, second]
+        between: Floats = first + share * (rest - first)
+        return between
 
     return nearest._replace(weights=mixed(points.weights), positions=mixed(points.positions))
 
