@@ -33,9 +33,10 @@ def can_be_lit(drawn: DrawnInstance) -> bool:
     """
     if drawn.deforms or drawn.outside is not None or not drawn.model.triangle_count:
         return False
-    looks = [part.material for part in drawn.model.parts]
-    clear = all(look.alpha == "blend" and look.base_colour[3] >= DENSE for look in looks)
-    return clear or not drawn.is_baked
+    if not drawn.is_baked:
+        return True
+    looks = (part.material for part in drawn.model.parts)
+    return all(look.alpha == "blend" and look.base_colour[3] >= DENSE for look in looks)
 
 
 @once

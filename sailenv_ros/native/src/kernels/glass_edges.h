@@ -1,5 +1,5 @@
-// Smooth borders of see-through surfaces: how much of a pixel they cover, and the mean of its light
-// with them and without.
+// Smooth edges of see-through surfaces: how dense they are on average in a pixel and at its centre,
+// for which their light was found.
 #pragma once
 
 #include <cstdint>

@@ -377,13 +377,13 @@ void trace_reflections(const Shading& s, Chunk& c, TracedRow* before) {
     before->y = c.y;
 }
 
+namespace {
+
 // What some of eight rays from glass met.
 struct GlassHits {
     uint32_t met = 0;  // bits of those that met anything
     vec3 light[8];
 };
-
-namespace {
 
 void look_from_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, uint32_t lanes,
                      GlassHits& found) {
