@@ -161,7 +161,7 @@ def test_panes_are_lit_by_the_sky_as_other_surfaces_are(
 
 
 @pytest.mark.parametrize("turn", [0.0, 17.0])
-def test_borders_of_glass_are_smooth(turn: float) -> None:
+def test_borders_of_glass_are_smooth(native: NativeRenderer, turn: float) -> None:
     """Dense cloth, which mirrors nothing, dims each pixel by the share of it that it covers."""
     size = 0.8
     sheet = model_of(
@@ -171,11 +171,7 @@ def test_borders_of_glass_are_smooth(turn: float) -> None:
     environment = replace(UNIFORM, background="colour", background_colour=GREY)
     scene = snapshot_of([thing], lights=(), environment=environment)
     eye = replace(camera_at(), picture=replace(PLAIN, smooth_edges=True))
-    renderer = NativeRenderer()
-    try:
-        rgb = renderer.render(RenderRequest(scene, eye, ("rgb",))).views["rgb"]
-    finally:
-        renderer.close()
+    rgb = native.render(RenderRequest(scene, eye, ("rgb",))).views["rgb"]
     light = LINEAR_OF_SRGB8[rgb[..., 1]] / LINEAR_OF_SRGB8[rgb[0, 0, 1]]
     covered = (1.0 - light) / (1.0 - 0.2 * 0.2)
     # Of 16 by 16 points of each pixel: where rays through them meet the sheet.
@@ -200,7 +196,7 @@ def test_borders_of_glass_are_smooth(turn: float) -> None:
     assert np.abs(error[inner]).max() < 0.02
 
 
-def test_narrow_folds_of_a_net_are_not_dashed() -> None:
+def test_narrow_folds_of_a_net_are_not_dashed(native: NativeRenderer) -> None:
     """A strip of a third of a pixel before a sheet of the same cloth, a little out of plumb."""
     look = {"base_colour": (0, 0, 0, 0.4), "alpha": "blend", "roughness": 1.0}
     sheet = Thing(model_of(WALL, **look), Pose((2.2, 0, 0)))
@@ -211,12 +207,8 @@ def test_narrow_folds_of_a_net_are_not_dashed() -> None:
         Pose.from_rpy_deg((2.0, 0.0, 0.0), (2.0, 0, 0)),
     )
     environment = replace(UNIFORM, background="colour", background_colour=GREY)
-    renderer = NativeRenderer()
-    try:
-        scene = snapshot_of([sheet, strip], lights=(), environment=environment)
-        rgb = renderer.render(RenderRequest(scene, eye, ("rgb",))).views["rgb"]
-    finally:
-        renderer.close()
+    scene = snapshot_of([sheet, strip], lights=(), environment=environment)
+    rgb = native.render(RenderRequest(scene, eye, ("rgb",))).views["rgb"]
     light = LINEAR_OF_SRGB8[rgb[8:-8, :, 1]]
     taken = (light[:, :10].mean() - light).clip(0.0).sum(axis=1)
     # Black cloth lets (1 - a)(1 - a) through; it covers a third of a pixel.
@@ -226,7 +218,7 @@ def test_narrow_folds_of_a_net_are_not_dashed() -> None:
     assert taken.max() < 1.6 * whole
 
 
-def test_the_far_wall_of_a_vessel_comes_first() -> None:
+def test_the_far_wall_of_a_vessel_comes_first(native: NativeRenderer) -> None:
     """Triangles of one part are drawn by their distance, not in the order of the mesh."""
     near, far = wall_mesh(30.0, 30.0), wall_mesh(30.0, 30.0)
     near = replace(near, positions=near.positions + np.float32([2.0, 0.0, 0.0]))
@@ -239,11 +231,8 @@ def test_the_far_wall_of_a_vessel_comes_first() -> None:
         )
         look = {"base_colour": (0.2, 0.8, 0.3, 0.6), "alpha": "blend", "roughness": 0.05}
         scene = snapshot_of([Thing(model_of(joined, **look))], lights=(), environment=UNIFORM)
-        renderer = NativeRenderer()
-        try:
-            return renderer.render(RenderRequest(scene, EYE, ("rgb",))).views["rgb"].copy()
-        finally:
-            renderer.close()
+        rgb: NDArray[np.uint8] = native.render(RenderRequest(scene, EYE, ("rgb",))).views["rgb"]
+        return rgb
 
     pictures = seen(near, far), seen(far, near)
     assert (pictures[0][36, 48] != seen(near)[36, 48]).any()

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.crossed_layers import above_crossed_layers
 from sailenv_ros.light.bake.direct import Points, free_shares
-from sailenv_ros.light.bake.texels import Texels, off_the_edges
+from sailenv_ros.light.bake.texels import Texels, block_points
 from sailenv_ros.native.bake_types import TexelMap
-from sailenv_ros.native.texel_kernels import bordered_blocks, nearest_triangles
+from sailenv_ros.native.texel_kernels import bordered_blocks
 from sailenv_ros.rays.light_rays import RayScene
 from sailenv_ros.rays.ray_patterns import low_discrepancy_points
 from sailenv_ros.rays.static_geometry import StaticGeometry
@@ -84,18 +84,7 @@ def _shares(
     chosen: NDArray[np.intp],
 ) -> Floats:
     """Return (K 16,) float32."""
-    of_map = texels.of_map(geometry.owner[texels.triangle])
-    triangle, weights = nearest_triangles(
-        of_map, texels.triangle, places, np.asarray(chosen, np.int64)
-    )
-    corners = geometry.corners[triangle]
-    weights = off_the_edges(corners, weights)
-    positions = np.einsum("nc,ncx->nx", weights, corners)
-    # Two-sided surfaces have the side of their texel.
-    side = np.repeat(np.einsum(
-        "nx,nx->n", texels.faces[chosen], geometry.faces[texels.triangle[chosen]]
-    ), POINTS)  # fmt: skip
-    faces = geometry.faces[triangle] * np.sign(side)[:, None].astype(np.float32)
+    triangle, _, positions, faces = block_points(geometry, places, texels, chosen)
     positions = above_crossed_layers(geometry, scene, positions, faces, triangle)
     # All points take the same rays: shares grow evenly across an edge, in small steps.
     shifts = np.zeros((len(triangle), 2), np.float32)

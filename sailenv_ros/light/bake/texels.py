@@ -6,16 +6,17 @@ From `StaticGeometry` and `Layout` to `Texels`. Knows neither rays nor light.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.layout import Layout
 from sailenv_ros.native.bake_types import TexelMap
-from sailenv_ros.native.texel_kernels import cover_texels
+from sailenv_ros.native.texel_kernels import cover_texels, nearest_triangles
 from sailenv_ros.rays.static_geometry import StaticGeometry
 
-__all__ = ["Texels", "normals_at", "off_the_edges", "rasterised"]
+__all__ = ["TexelPoints", "Texels", "block_points", "normals_at", "rasterised"]
 
 REACH = 1.5
 """Texels this near to a triangle stand for its nearest point: bilinear look-ups meet them."""
@@ -109,6 +110,47 @@ def rasterised(geometry: StaticGeometry, layout: Layout) -> Texels:
         positions=np.einsum("nc,ncx->nx", share, geometry.corners[triangle]),
         normals=normals_at(geometry, triangle, share, faces),
         faces=faces,
+    )
+
+
+class TexelPoints(NamedTuple):
+    """Points of triangles, (N, …) each, with their normals to the side that is lit."""
+
+    triangle: NDArray[np.int32]
+    weights: NDArray[np.float32]
+    positions: NDArray[np.float32]
+    faces: NDArray[np.float32]
+
+
+def block_points(
+    geometry: StaticGeometry,
+    places: NDArray[np.float32],
+    texels: Texels,
+    chosen: NDArray[np.intp],
+) -> TexelPoints:
+    """Return the points of some texels: so many of each, one after another, as of its block.
+
+    Parameters
+    ----------
+    places : (T, 3, 2) float32
+        Of the triangles' corners in the map [texels].
+    chosen : (K,) int
+        Numbers of the texels.
+    """
+    of_map = texels.of_map(geometry.owner[texels.triangle])
+    triangle, weights = nearest_triangles(
+        of_map, texels.triangle, places, np.asarray(chosen, np.int64)
+    )
+    corners = geometry.corners[triangle]
+    weights = off_the_edges(corners, weights)
+    # Two-sided surfaces have the side of their texel.
+    side = np.einsum("nx,nx->n", texels.faces[chosen], geometry.faces[texels.triangle[chosen]])
+    sides = np.repeat(side, len(triangle) // max(len(chosen), 1))
+    return TexelPoints(
+        triangle=triangle,
+        weights=weights,
+        positions=np.einsum("nc,ncx->nx", weights, corners),
+        faces=geometry.faces[triangle] * np.sign(sides)[:, None].astype(np.float32),
     )
 
 

@@ -8,14 +8,12 @@ surroundings as the texel's points do on average. Knows no light.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sailenv_ros.light.bake.texels import Texels, normals_at, off_the_edges
+from sailenv_ros.light.bake.texels import TexelPoints, Texels, block_points, normals_at
 from sailenv_ros.light.bake.worker_pool import in_chunks
-from sailenv_ros.native.texel_kernels import BLOCK_POINTS, nearest_triangles
 from sailenv_ros.rays.light_rays import LIFT_M, RayScene
 from sailenv_ros.rays.ray_patterns import fibonacci_sphere
 from sailenv_ros.rays.static_geometry import StaticGeometry
@@ -49,15 +47,6 @@ LEAST_FACING = 0.5
 """Cosine between two normals below which points belong to different surfaces."""
 
 CHUNK_TEXELS = 4096
-
-
-class _Points(NamedTuple):
-    """Points of surfaces, each (N, …), and which side of a texel is lit at them."""
-
-    triangle: NDArray[np.int32]
-    weights: Floats
-    positions: Floats
-    faces: Floats
 
 
 def with_typical_points(
@@ -141,22 +130,15 @@ def _across(faces: Floats) -> tuple[Floats, Floats]:
 
 def _points_of(
     geometry: StaticGeometry, places: Floats, texels: Texels, chosen: NDArray[np.intp]
-) -> _Points:
+) -> TexelPoints:
     """Return (K, P, …) points of each chosen texel: the one that it has first."""
-    of_map = texels.of_map(geometry.owner[texels.triangle])
-    triangle, weights = nearest_triangles(
-        of_map, texels.triangle, places, np.asarray(chosen, np.int64)
-    )
-    weights = off_the_edges(geometry.corners[triangle], weights)
-    count = len(chosen), BLOCK_POINTS**2
-    positions = np.einsum("nc,ncx->nx", weights, geometry.corners[triangle])
-    faces = geometry.faces[triangle].reshape(*count, 3)
-    side = np.einsum("nx,nx->n", texels.faces[chosen], geometry.faces[texels.triangle[chosen]])
-    faces = faces * np.sign(side)[:, None, None].astype(np.float32)
-    more = triangle.reshape(count), weights.reshape(*count, 3), positions.reshape(*count, 3), faces
-    own = (getattr(texels, name)[chosen] for name in _Points._fields)
-    return _Points(
-        *(np.concatenate([a[:, None], b], axis=1) for a, b in zip(own, more, strict=True))
+    more = block_points(geometry, places, texels, chosen)
+    own = (getattr(texels, name)[chosen] for name in TexelPoints._fields)
+    return TexelPoints(
+        *(
+            np.concatenate([a[:, None], b.reshape(len(chosen), -1, *b.shape[1:])], axis=1)
+            for a, b in zip(own, more, strict=True)
+        )
     )
 
 
@@ -164,10 +146,10 @@ def _most_typical(
     geometry: StaticGeometry,
     scene: RayScene,
     texels: Texels,
-    points: _Points,
+    points: TexelPoints,
     chosen: NDArray[np.intp],
     sides: Floats,
-) -> tuple[NDArray[np.bool_], _Points]:
+) -> tuple[NDArray[np.bool_], TexelPoints]:
     """Return (K,) bool, which texels another point than the first is to stand for, and those."""
     openness = _openness(scene, points, sides)
     useful = openness > INSIDE
@@ -179,17 +161,17 @@ def _most_typical(
     mean = (openness[:, 1:] * counted).sum(axis=1) / np.maximum(counted.sum(axis=1), 1)
     more = openness - mean[:, None]
     moves = counted.any(axis=1) & ~(useful[:, 0] & (np.abs(more[:, 0]) < ALIKE))
-    points = _Points(*(array[moves] for array in points))
+    points = TexelPoints(*(array[moves] for array in points))
     return moves, _between(points, more[moves], useful[moves], sides[moves])
 
 
 def _between(
-    points: _Points, more: NDArray[np.float64], useful: NDArray[np.bool_], sides: Floats
-) -> _Points:
+    points: TexelPoints, more: NDArray[np.float64], useful: NDArray[np.bool_], sides: Floats
+) -> TexelPoints:
     """Return (K, …) points between two of each (K, P), one more open than the mean, one less."""
     every = np.arange(len(more))
     best = np.argmin(np.where(useful, np.abs(more), np.inf), axis=1)
-    nearest, own = _Points(*(array[every, best] for array in points)), more[every, best]
+    nearest, own = TexelPoints(*(array[every, best] for array in points)), more[every, best]
     away = np.linalg.norm(points.positions - nearest.positions[:, None], axis=2)
     other = useful & (points.triangle == nearest.triangle[:, None])
     other &= (more * own[:, None] < 0.0) & (away < BESIDE * sides[:, None])
@@ -206,7 +188,7 @@ def _between(
     return nearest._replace(weights=mixed(points.weights), positions=mixed(points.positions))
 
 
-def _openness(scene: RayScene, points: _Points, sides: Floats) -> NDArray[np.float64]:
+def _openness(scene: RayScene, points: TexelPoints, sides: Floats) -> NDArray[np.float64]:
     """Return (K, P) float64: the share of the light of an even sky that nothing near hides."""
     shape = points.triangle.shape
     faces = points.faces.reshape(-1, 3)

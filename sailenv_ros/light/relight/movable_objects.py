@@ -31,17 +31,21 @@ def can_be_lit(drawn: DrawnInstance) -> bool:
     That is what can move, and nets and other dense sheets that are seen through: maps have nothing
     of these.
     """
-    if drawn.deforms or drawn.outside is not None or not drawn.model.triangle_count:
+    if drawn.is_baked and not _is_dense_sheet(drawn.model):
         return False
-    if not drawn.is_baked:
-        return True
-    looks = (part.material for part in drawn.model.parts)
+    return not drawn.deforms and drawn.outside is None and drawn.model.triangle_count > 0
+
+
+def _is_dense_sheet(model: Model) -> bool:
+    looks = (part.material for part in model.parts)
     return all(look.alpha == "blend" and look.base_colour[3] >= DENSE for look in looks)
 
 
 @once
 def casts_shadows(model: Model) -> bool:
     """Return whether anything of a model stops light."""
+    if any(part.material.alpha == "opaque" and len(part.mesh.triangles) for part in model.parts):
+        return True
     return bool((triangles_of(model).passes == 0.0).any())
 
 

@@ -174,7 +174,7 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     for (int k = 0; k < 8; k++) {
         if (!wanted[k]) continue;
         for (int j = 0; j < 3; j++) {
-            behind[8 * j + k] = from_half(splat(static_cast<int32_t>(radiance[4 * k + j])))[0];
+            behind[8 * j + k] = number_of_half(radiance[4 * k + j]);
         }
     }
     const Vec3x8 seen_through = Vec3x8(load(behind), load(behind + 8), load(behind + 16)) * through;
@@ -266,12 +266,7 @@ float nearness(const Triangle& t, const Projection& projection) {
 std::vector<uint32_t> farthest_first(const TriangleSet& glass, const Projection& projection,
                                      int32_t band) {
     std::vector<uint32_t> order;
-    for (int64_t g = 0; g < glass.segment_count; g++) {
-        const Segment& segment = glass.segments[static_cast<size_t>(g)];
-        const auto begin = segment.entries.begin();
-        order.insert(order.end(), begin + segment.starts[static_cast<size_t>(band)],
-                     begin + segment.starts[static_cast<size_t>(band) + 1]);
-    }
+    for_triangles(glass, band, [&](uint32_t number) { order.push_back(number); });
     const auto part = [&](uint32_t number) { return glass.triangles[number].part; };
     for (auto first = order.begin(); first != order.end();) {
         const auto end = std::find_if(

@@ -19,15 +19,11 @@ constexpr int ALIKE = 64;  // difference of densities that is not seen
 // The columns of pixels that the triangles of a band may touch.
 GlassEdges::Columns columns_of(const TriangleSet& set, int32_t band, int32_t width) {
     int32_t first = 2 * width, last = -1;
-    for (int64_t k = 0; k < set.segment_count; k++) {
-        const Segment& segment = set.segments[static_cast<size_t>(k)];
-        const uint32_t end = segment.starts[static_cast<size_t>(band) + 1];
-        for (uint32_t at = segment.starts[static_cast<size_t>(band)]; at < end; at++) {
-            const Triangle& t = set.triangles[segment.entries[at]];
-            first = std::min<int32_t>(first, t.x0);
-            last = std::max<int32_t>(last, t.x1);
-        }
-    }
+    for_triangles(set, band, [&](uint32_t number) {
+        const Triangle& t = set.triangles[number];
+        first = std::min<int32_t>(first, t.x0);
+        last = std::max<int32_t>(last, t.x1);
+    });
     // A fine sample between two pixels is of both.
     return {std::max(first - 1, 0) / 2, std::min(last / 2 + 1, width)};
 }
@@ -45,8 +41,6 @@ float passes_of(const Part& part) {
     return (1.0f - kept) * (1.0f - alpha) * (1.0f + alpha * (hue - 1.0f));
 }
 
-float value_of(uint16_t half) { return from_half(splat(static_cast<int32_t>(half)))[0]; }
-
 uint16_t half_of(float value) { return static_cast<uint16_t>(to_half(splat(value))[0]); }
 
 // What glass does to pixels, as if it were as dense as can be: it dims what lies behind, by a
@@ -58,8 +52,8 @@ struct Change {
     void add(const uint16_t* with, const uint16_t* without, int dense) {
         const float scale = WHOLE / static_cast<float>(dense);
         for (int c = 0; c < 3; c++) {
-            const float before = value_of(without[c]);
-            const float change = scale * (value_of(with[c]) - before);
+            const float before = number_of_half(without[c]);
+            const float change = scale * (number_of_half(with[c]) - before);
             (change < 0.0f ? dims : adds)[c] += change < 0.0f ? change / before : change;
         }
         count++;
@@ -76,13 +70,13 @@ struct Range {
     float low[3], high[3];
 
     explicit Range(const uint16_t* light) {
-        for (int c = 0; c < 3; c++) low[c] = high[c] = value_of(light[c]);
+        for (int c = 0; c < 3; c++) low[c] = high[c] = number_of_half(light[c]);
     }
 
     void add(const uint16_t* light) {
         for (int c = 0; c < 3; c++) {
-            low[c] = std::min(low[c], value_of(light[c]));
-            high[c] = std::max(high[c], value_of(light[c]));
+            low[c] = std::min(low[c], number_of_half(light[c]));
+            high[c] = std::max(high[c], number_of_half(light[c]));
         }
     }
 
@@ -103,8 +97,7 @@ void reserve_glass(GlassEdges& edges, const DrawList& glass, int64_t pixels, int
     }
     edges.passes.resize(static_cast<size_t>(glass.count));
     for (int64_t k = 0; k < glass.count; k++) {
-        const Part& part = glass.parts[k];
-        edges.passes[static_cast<size_t>(k)] = passes_of(part);
+        edges.passes[static_cast<size_t>(k)] = passes_of(glass.parts[k]);
     }
 }
 
@@ -173,8 +166,9 @@ void mix_glass(const Shading& s, int32_t begin, int32_t end, GlassEdges::Columns
             if (std::abs(own.mean - own.centre) < ALIKE) continue;
             // Its centre tells what glass does there, unless that meets nothing or an edge that is
             // denser than most of the pixel; then those around it do.
-            const bool elsewhere = own.centre < ALIKE || own.centre > own.mean + own.mean / 8;
-            const int most = own.centre < ALIKE ? 65535 : own.mean + own.mean / 8;
+            const bool empty = own.centre < ALIKE;
+            const int most = empty ? 65535 : own.mean + own.mean / 8;
+            const bool elsewhere = empty || own.centre > most;
             Change change;
             Range range(without + 4 * pixel);
             if (elsewhere) {
@@ -189,12 +183,13 @@ void mix_glass(const Shading& s, int32_t begin, int32_t end, GlassEdges::Columns
                     }
                 }
             }
-            const bool alone = change.count == 0;
-            if (alone && own.centre < ALIKE) continue;
-            if (alone) change.add(with + 4 * pixel, without + 4 * pixel, own.centre);
+            if (change.count == 0) {
+                if (empty) continue;
+                change.add(with + 4 * pixel, without + 4 * pixel, own.centre);
+            }
             GlassEdges::Smoothed mixed{pixel, {}};
             for (int c = 0; c < 3; c++) {
-                const float light = change.at(own.mean, value_of(without[4 * pixel + c]), c);
+                const float light = change.at(own.mean, number_of_half(without[4 * pixel + c]), c);
                 // Where surfaces beside are turned otherwise, densities tell little.
                 mixed.light[c] = half_of(elsewhere ? range.nearest(light, c) : light);
             }

@@ -230,6 +230,9 @@ LANES_INLINE f8 from_half(i8 h) {
     // The bits of a half, shifted, are those of a float 2^112 times smaller.
     return bit_cast_float((h & 0x7fff) << 13) * 0x1p112f;
 }
+LANES_INLINE float number_of_half(uint16_t h) {
+    return from_half(splat(static_cast<int32_t>(h)))[0];
+}
 // Eight halves that lie side by side.
 LANES_INLINE f8 load_halves(const uint16_t* p) {
 #if defined(__F16C__)

@@ -149,6 +149,24 @@ RowRange rows_of_band(const Projection& projection, int32_t band, int32_t band_r
 // A table's triangles lie on several faces.
 inline int32_t faces_of(const Projection& p) { return p.table == nullptr ? 1 : CUBE_FACES; }
 
+// Calls use(number) for all triangles of a band, in their order.
+template <class Use>
+void for_triangles(const TriangleSet& set, int32_t band, const Use& use) {
+    for (int64_t s = 0; s < set.segment_count; s++) {
+        const Segment& segment = set.segments[static_cast<size_t>(s)];
+        const uint32_t begin = segment.starts[static_cast<size_t>(band)];
+        const uint32_t end = segment.starts[static_cast<size_t>(band) + 1];
+        const uint32_t* entries = segment.entries.data();
+        for (uint32_t k = begin; k < end; k++) {
+            const char* ahead = reinterpret_cast<const char*>(
+                set.triangles.data() + entries[k + 8 < end ? k + 8 : end - 1]);
+            __builtin_prefetch(ahead);
+            __builtin_prefetch(ahead + 64);
+            use(entries[k]);
+        }
+    }
+}
+
 // Draws one band: `visible` (may be null) and `inverse_depth` begin at the band's first sample.
 void draw_band(const TriangleSet& set, const DrawList& parts, const Projection& projection,
                int32_t band, int32_t band_rows, int64_t stride, uint32_t* visible,
