@@ -143,6 +143,7 @@ class FrameLight:
             partial(sum_texels, threads=threads),
             store,
             native_library().digest,
+            has_faces=False,
         )
         self._reflection_points = np.zeros(1, REFLECTION_POINT)
         self._sky: tuple[tuple[SkyMap, float | None], NDArray[np.float16]] | None = None

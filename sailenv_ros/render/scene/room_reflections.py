@@ -77,6 +77,8 @@ class RoomReflections:
     drawn_by : str
         Distinguishes what draws: shares of rooms in light as it was baked are kept on disk for it.
         Empty keeps none.
+    has_faces : bool
+        Whether faces of area lights are in the maps; not if what draws finds them for each picture.
 
     Attributes
     ----------
@@ -94,11 +96,14 @@ class RoomReflections:
         add: Sum,
         store: ReflectionStore[Share] | None = None,
         drawn_by: str = "",
+        *,
+        has_faces: bool = True,
     ) -> None:
         self._blur = blur
         self._sum = add
         self._store = store
         self._drawn_by = drawn_by
+        self._has_faces = has_faces
         self._room: Hashable = None
         self._shares: dict[Hashable, Share] = {}
         self._of: tuple[object, bytes] | None = None
@@ -217,7 +222,8 @@ class RoomReflections:
         flat = reflections.flattened(around.cameras, seen, reflections.EDGE)
         glint = None
         if lamp is not None:
-            flat += radiance_of(lamp, around)
+            if self._has_faces:
+                flat += radiance_of(lamp, around)
             glint = glint_of(lamp, around)
         glints = [] if glint is None else [glint]
         return reflections.prefilter(flat, blur=self._blur, glints=glints)[..., :3]

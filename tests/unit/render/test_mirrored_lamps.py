@@ -133,7 +133,10 @@ def test_glints_are_blurred_as_bright_texels_are(monkeypatch: pytest.MonkeyPatch
 
 
 def test_large_things_and_lamps_with_highlights_of_their_own_keep_what_they_mirrored() -> None:
-    """The point for what is large has no lamp, nor has any one that is drawn live."""
+    """The point for what is large has no lamp, nor has any one that is drawn live.
+
+    Nor has any one a face where what draws finds faces for each picture.
+    """
     middle = np.array(GRID.origin_m) + 5.0
     panel = replace(
         PANEL, position_m=tuple(middle + np.array([2.0, 0.0, -3.0])), direction=(-1.0, 0.0, 0.0)
@@ -148,8 +151,8 @@ def test_large_things_and_lamps_with_highlights_of_their_own_keep_what_they_mirr
         radiance = np.full((*size, 3), value, np.float32)
         return [Seen(radiance, np.full(size, np.inf, np.float32)) for _ in views]
 
-    def shown(live: tuple[Light, ...]) -> NDArray[np.float16]:
-        made = RoomReflections(BLUR, sum_texels)
+    def shown(live: tuple[Light, ...], *, has_faces: bool = True) -> NDArray[np.float16]:
+        made = RoomReflections(BLUR, sum_texels, has_faces=has_faces)
         made.update(scene, np.ones(1, np.bool_), None, look, live)
         return made.layers[:, 0, 1:-1, 1:-1, :3]
 
@@ -157,4 +160,5 @@ def test_large_things_and_lamps_with_highlights_of_their_own_keep_what_they_mirr
     plain = 0.01 * np.array(panel.power)
     np.testing.assert_allclose(lit[LAMPLESS].max(axis=(0, 1)), plain, rtol=2e-3)
     np.testing.assert_allclose(lit[MIDDLE].max(axis=(0, 1)), 101.0 * plain, rtol=2e-3)
-    np.testing.assert_allclose(live.max(axis=(0, 1, 2)), plain, rtol=2e-3)
+    for without in (live, shown((), has_faces=False)):
+        np.testing.assert_allclose(without.max(axis=(0, 1, 2)), plain, rtol=2e-3)

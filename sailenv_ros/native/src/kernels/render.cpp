@@ -203,8 +203,8 @@ void draw_rows(int64_t threads, DrawingScratch& scratch, const View& view,
         }
     });
     if (shaded && traces_reflections(shading)) {
-        sample_rough(threads, shading, rows.first, rows.end, scratch.rough);
-        shading.rough = &scratch.rough;
+        sample_mirrored(threads, shading, rows.first, rows.end, scratch.mirrored);
+        shading.samples = &scratch.mirrored;
     }
     parallel_for(threads, count, band_rows, [&](int64_t begin, int64_t end, int64_t) {
         const int32_t first = rows.first + static_cast<int32_t>(begin), band = first / band_rows;

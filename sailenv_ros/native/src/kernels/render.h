@@ -7,8 +7,8 @@
 
 #include "edges.h"
 #include "glass_edges.h"
+#include "mirror_samples.h"
 #include "shade.h"
-#include "shade_rough.h"
 
 namespace sailenv {
 
@@ -16,7 +16,7 @@ namespace sailenv {
 struct DrawingScratch : Scratch {
     std::vector<EdgeScratch> edges;  // of each thread
     std::vector<BandEdges> of_bands;
-    RoughSamples rough;
+    MirrorSamples mirrored;
     GlassEdges glass_edges;
     std::vector<std::unique_ptr<DrawingScratch>> of_slots;  // of threads that draw rows apart
 };

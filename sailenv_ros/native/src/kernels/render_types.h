@@ -143,7 +143,7 @@ struct Light {
     const int32_t* reflection_table;  // (ids,): the point that an instance uses
     vec3 room_low, room_high;
     const TracedScene* traced;        // or null
-    const RayLight* mirrored_lights;  // whose faces and highlights rough surfaces mirror
+    const RayLight* mirrored_lights;  // whose faces and highlights surfaces mirror
     int64_t mirrored_light_count;
     int32_t outside_id;      // of what lies outside the room, which shines as the sky does; 0
     float outside_radiance;  // of its white

@@ -1,8 +1,8 @@
 // Light of opaque surfaces and of the sky: the same model as shaders/lighting.frag and sky.frag.
 //
 // A band is walked down in chunks of pixels, which go through one stage after the other:
-// shade_gather.cpp, shade_material.cpp, shade_around.cpp, shade_reflections.cpp, shade_traced.cpp,
-// shade_rough.cpp, shade_combine.cpp.
+// shade_gather.cpp, shade_material.cpp, shade_around.cpp, shade_reflections.cpp, shade_rough.cpp,
+// shade_traced.cpp, shade_combine.cpp.
 #include "shade.h"
 
 #include <algorithm>
@@ -126,8 +126,12 @@ void light_chunk(const Shading& s, Chunk& c, const int32_t* x, const int32_t* y,
     }
     mirror_surroundings(s, c);
     if (traces_reflections(s)) {
+        correct_mirrored(s, x, y, c);
         trace_reflections(s, c, before);
-        if (s.rough != nullptr) mirror_rough(s, x, y, c);
+        mirror_rough(s, x, y, c);
+        for (int32_t i = 0; i < c.padded; i += 8) {
+            c.mirrored.set(i, c.mirrored.at(i) + c.faces.at(i));
+        }
     }
     reflect_to_eye(s, c);
 }

@@ -9,7 +9,7 @@
 namespace sailenv {
 
 struct Chunk;
-struct RoughSamples;
+struct MirrorSamples;
 
 // What shading needs besides the scene; all in single precision.
 struct Shading {
@@ -19,7 +19,7 @@ struct Shading {
     const uint8_t* at_baked_pose;
     const Light* light;
     const Outputs* outputs;
-    const RoughSamples* rough;  // what rough surfaces mirror; null where no rays tell
+    const MirrorSamples* samples;  // of what surfaces mirror; null where no rays tell
     int64_t width, stride;
     const uint32_t* visible;
     FastLens lens;  // 1, 1, 0, 0 where there is a table

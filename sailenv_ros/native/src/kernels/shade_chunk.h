@@ -57,10 +57,13 @@ struct Chunk {
     Vectors ray;                                  // world frame, depth 1
     Vectors point;                                // world [m]
     Vectors around;                               // irradiance / pi, but for the lamps'
-    Vectors mirrored;                             // radiance
-    alignas(32) float arrives[CHUNK];             // share of the main light
-    Vectors light;                                // radiance towards the eye
-    alignas(32) float from_around[CHUNK];         // luminance of what of it came from around
+    Vectors mirrored;                             // radiance, without faces of area lights
+    Vectors darkened;               // by how much less of the room it is than pictures of that have
+    alignas(32) float open[CHUNK];  // share of the room that is seen
+    Vectors faces;                  // radiance of faces of area lights, mirrored
+    alignas(32) float arrives[CHUNK];      // share of the main light
+    Vectors light;                         // radiance towards the eye
+    alignas(32) float from_around[CHUNK];  // luminance of what of it came from around
 };
 
 constexpr float LEAST_ROUGHNESS = 0.045f;  // smoother ones have no highlights; see textures.glsl
@@ -108,9 +111,6 @@ void light_from_sky(const Shading& s, Chunk& c);
 // What each point mirrors, as pictures of the room have it.
 void mirror_surroundings(const Shading& s, Chunk& c);
 
-// The same of eight points in baked light, by the pictures from `point`.
-Vec3x8 mirrored_around(const Light& light, i8 point, const Chunk& c, int32_t i);
-
 // What rays from a row's pixels met: weighted sums of radiance, and of which surfaces.
 struct TracedRow {
     int32_t y = -9;
@@ -122,13 +122,16 @@ struct TracedRow {
 // From this roughness on many pixels share what rays of their lobes meet.
 constexpr float ROUGH = 0.36f;
 
-// Puts in its place what rays meet of smooth surfaces, where that is worth it; see
-// shade_traced.cpp. `before` has rows above and is brought up to date, null for points that lie
-// anywhere; before and behind it stand those of the chunks beside this one.
+// Puts in its place what rays meet of smooth surfaces, where that is worth it, with the faces of
+// area lights where they are flat; see shade_traced.cpp. `before` has rows above and is brought up
+// to date, null for points that lie anywhere; before and behind it stand those of the chunks beside
+// this one.
 void trace_reflections(const Shading& s, Chunk& c, TracedRow* before);
 
-// Puts in its place what rough surfaces mirror by the samples of a picture. `x` and `y` are of the
-// pixels in which the points lie.
+// By the samples of a picture: corrects what pictures of the room have and finds the faces of area
+// lights; puts in its place what rough surfaces mirror. `x` and `y` are of the pixels in which the
+// points lie.
+void correct_mirrored(const Shading& s, const int32_t* x, const int32_t* y, Chunk& c);
 void mirror_rough(const Shading& s, const int32_t* x, const int32_t* y, Chunk& c);
 
 // The direction from which a surface mirrors light to the eye.

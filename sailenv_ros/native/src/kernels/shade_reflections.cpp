@@ -21,6 +21,25 @@ f8 arc_tangent(f8 y, f8 x) {
     return negated_if(r, bits(y) >> 31);
 }
 
+// What eight points in baked light mirror, by the pictures from `point`.
+Vec3x8 mirrored_around(const Light& light, i8 point, Chunk& c, int32_t i) {
+    alignas(32) float open[4][8];
+    for (int k = 0; k < 8; k++) {
+        for (int j = 0; j < 4; j++) open[j][k] = light.reflection_points[point[k]].light[j];
+    }
+    const Vec3x8 around = c.around.at(i), normal = c.normal.at(i);
+    const f8 roughness = load(c.roughness + i);
+    const Vec3x8 room = mirrored_room(light, point, c.point.at(i), mirrored_ray(c, i), roughness);
+    // Where less light arrives than in the middle of the room, less of the room is seen.
+    const Vec3x8 bent = {load(open[1]), load(open[2]), load(open[3])};
+    const f8 there = load(open[0]) + bent.x * normal.x + bent.y * normal.y + bent.z * normal.z;
+    const f8 share = clamp8(luminance(around) / max8(there, splat(1e-4f)), 0.0f, 1.0f);
+    const f8 rough = share_mirrored_around(roughness);
+    store(c.open + i, share);
+    c.darkened.set(i, room * ((1.0f - share) * (1.0f - rough)));
+    return mix(room * share, around, rough);
+}
+
 }  // namespace
 
 Vec3x8 background(const Light& light, Vec3x8 d) {
@@ -57,6 +76,8 @@ void mirror_surroundings(const Shading& s, Chunk& c) {
         const Vec3x8 around = c.around.at(i);
         const f8 roughness = load(c.roughness + i);
         Vec3x8 seen = around;
+        c.darkened.set(i, splat(vec3(0.0f, 0.0f, 0.0f)));
+        store(c.open + i, splat(1.0f));
         if (!light.baked) {
             const Vec3x8 d = mirrored_ray(c, i);
             const Vec3x8 soft =
@@ -72,21 +93,6 @@ void mirror_surroundings(const Shading& s, Chunk& c) {
         }
         c.mirrored.set(i, seen);
     }
-}
-
-Vec3x8 mirrored_around(const Light& light, i8 point, const Chunk& c, int32_t i) {
-    alignas(32) float open[4][8];
-    for (int k = 0; k < 8; k++) {
-        for (int j = 0; j < 4; j++) open[j][k] = light.reflection_points[point[k]].light[j];
-    }
-    const Vec3x8 around = c.around.at(i), normal = c.normal.at(i);
-    const f8 roughness = load(c.roughness + i);
-    const Vec3x8 room = mirrored_room(light, point, c.point.at(i), mirrored_ray(c, i), roughness);
-    // Where less light arrives than in the middle of the room, less of the room is seen.
-    const Vec3x8 bent = {load(open[1]), load(open[2]), load(open[3])};
-    const f8 there = load(open[0]) + bent.x * normal.x + bent.y * normal.y + bent.z * normal.z;
-    const f8 share = clamp8(luminance(around) / max8(there, splat(1e-4f)), 0.0f, 1.0f);
-    return mix(room * share, around, share_mirrored_around(roughness));
 }
 
 Vec3x8 mirrored_room(const Light& light, i8 point, Vec3x8 at, Vec3x8 d, f8 roughness) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "area_faces.h"
 #include "traced_hits.h"
 
 namespace sailenv {
@@ -16,9 +17,6 @@ constexpr float SMOOTH = 0.22f;
 // What is nearer than NEAR_M is not far, and what is farther than FAR_M is: there few rays would
 // not find what is bright and small, as pictures do.
 constexpr float NEAR_M = 0.3f, FAR_M = 0.8f;
-// Angle between the mirrored rays of neighbouring pixels, from where on pictures count more and
-// more where little is mirrored, and alone [rad].
-constexpr float FLAT = 0.05f, BENT = 0.15f;
 // Where few rays stand for many, what they meet counts no more than so many times what pictures
 // have, or than light grey: lamps would be single bright pixels.
 constexpr float MOST_TIMES = 2.0f, LIGHT_GREY = 0.5f;
@@ -53,6 +51,7 @@ struct TracedPixels {
     alignas(32) float share[CHUNK];     // of what rays meet in what is mirrored; 0 for none
     alignas(32) float mirrored[CHUNK];  // share of all light that is sent back
     float angle[CHUNK];                 // to the ray of the pixel beside
+    bool meets_faces[CHUNK];            // rays tell of the faces of area lights, too
     int32_t step[CHUNK];                // each so many pixels look; 1 for all
     int32_t ray_count[CHUNK];
     Vectors rays;
@@ -130,6 +129,7 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
         if (pixels.mirrored[i] < LARGE_SHARE) {
             pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
         }
+        pixels.meets_faces[i] = c.roughness[i] < SMOOTH && angle <= FLAT;
         pixels.step[i] = step_of(c.roughness[i], angle, pixels.mirrored[i] >= LARGE_SHARE);
         some |= pixels.share[i] > 0.0f;
     }
@@ -240,8 +240,11 @@ void trace_rays(const Shading& s, const Chunk& c, int32_t number, TracedPixels& 
             c.roughness[i] < SMOOTH ? dot(vector_at(c.normal, i), ray) : lobe_weight(c, i, ray);
         const float hit = is_drawn(met) ? weight * hit_share(c.roughness[i], met.hit.t) : 0.0f;
         pixels.row.weight[i] += weight;
-        const vec3 sum = vector_at(pixels.row.sum, i);
-        put(pixels.row.sum, i, sum + vector_at(c.mirrored, i) * (weight - hit));
+        vec3 sum = vector_at(pixels.row.sum, i) + vector_at(c.mirrored, i) * (weight - hit);
+        if (pixels.meets_faces[i]) {
+            sum = sum + radiance_of_faces(*s.light, begin, ray, met.hit.t) * weight;
+        }
+        put(pixels.row.sum, i, sum);
         if (!(hit > 0.0f)) continue;
         weights[count] = hit;
         const vec3 along = vector_at(c.ray, i);
@@ -371,6 +374,9 @@ void trace_reflections(const Shading& s, Chunk& c, TracedRow* before) {
         if (!(met.weight > 0.0f)) continue;
         const vec3 mean = met.sum * (1.0f / met.weight);
         put(c.mirrored, i, mix(vector_at(c.mirrored, i), mean, pixels.share[i]));
+        if (pixels.meets_faces[i]) {
+            put(c.faces, i, vector_at(c.faces, i) * (1.0f - pixels.share[i]));
+        }
     }
     if (!looks) return;
     *before = pixels.row;
@@ -396,6 +402,7 @@ void look_from_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, ui
         const vec3 along(ray.x[k], ray.y[k], ray.z[k]);
         const SceneHit met = closest_hit(*s.light->traced, begin, along, ENDLESS);
         if (!is_drawn(met)) continue;
+        found.light[k] = radiance_of_faces(*s.light, begin, along, met.hit.t);
         set_hit(met, begin, along, distance[k], USUAL_ANGLE, hits, count);
         of[count++] = k;
     }
@@ -403,7 +410,7 @@ void look_from_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, ui
     shade_hits(s, hits, count);
     for (int32_t j = 0; j < count; j++) {
         found.met |= 1u << of[j];
-        found.light[of[j]] = vec3(hits.light.x[j], hits.light.y[j], hits.light.z[j]);
+        found.light[of[j]] = found.light[of[j]] + vector_at(hits.light, j);
     }
 }
 

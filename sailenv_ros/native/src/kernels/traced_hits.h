@@ -73,6 +73,10 @@ constexpr float ALIKE = 0.97f;  // cosine between normals of those who share wha
 // From this share of all light that is sent back on, what is mirrored is worth more rays.
 constexpr float LARGE_SHARE = 0.6f;
 
+// Angle between the mirrored rays of neighbouring pixels: up to where surfaces are flat, so that
+// pixels can share what their rays meet, and from where on they are too bent for it [rad].
+constexpr float FLAT = 0.05f, BENT = 0.15f;
+
 // Whether rays of a relief lead everywhere: too few would be alike, where little is mirrored.
 LANES_INLINE i8 leads_everywhere(const Chunk& c, int32_t i, f8 mirrored) {
     return c.detailed ? (load(c.relief + i) > 0.0f) & (mirrored < LARGE_SHARE) : i8{};

@@ -1,0 +1,121 @@
+// What surfaces mirror of the faces of area lights, by the shape of GGX's lobe.
+//
+// The slopes of GGX's microfacets along an axis are spread as p(x) = a^2 / (2 (a^2 + x^2)^(3/2))
+// (Walter et al. 2007, "Microfacet models for refraction through rough surfaces", integrated over
+// the other axis), of which the share below x is 1/2 + x / (2 sqrt(a^2 + x^2)). Where facets slope,
+// the mirrored ray moves over the plane of the face; along each of the face's axes the lobe is
+// taken to spread by itself.
+#include "area_faces.h"
+
+#include <cmath>
+
+#include "ray_types.h"
+#include "rays.h"
+
+namespace sailenv {
+namespace {
+
+// Rays along a face count as if they led to it by this cosine.
+constexpr float LEAST_SLANT = 1e-3f;
+// The narrowest lobe, in halves of a face's side.
+constexpr float NARROWEST = 1e-4f;
+// Square of the sine to the normal up to where the plane of incidence is any.
+constexpr float HEAD_ON = 1e-8f;
+
+f8 share_below(f8 x) { return 0.5f + 0.5f * x / sqrt8(1.0f + x * x); }
+
+// Of `spread`, the face's places to which facets of slope 1 move the ray.
+LobeOnFace::Axis axis_of(f8 middle, f8 first, f8 second, f8 rough) {
+    LobeOnFace::Axis r;
+    r.middle = middle;
+    r.width = max8(rough * sqrt8(first * first + second * second), splat(NARROWEST));
+    const f8 scale = 1.0f / r.width;
+    r.below = share_below((-1.0f - middle) * scale);
+    r.share = share_below((1.0f - middle) * scale) - r.below;
+    return r;
+}
+
+// A unit vector across a normal.
+Vec3x8 across_of(Vec3x8 n) {
+    const f8 none = splat(0.0f);
+    const Vec3x8 flat = where(abs8(n.z) < 0.7f, Vec3x8(-n.y, n.x, none), Vec3x8(none, -n.z, n.y));
+    return flat * inverse_length(flat);
+}
+
+}  // namespace
+
+float LobeOnFace::place(const Axis& axis, int lane, float part) {
+    const float y = 2.0f * (axis.below[lane] + axis.share[lane] * part) - 1.0f;
+    const float x = axis.middle[lane] + axis.width[lane] * y / std::sqrt(max(1.0f - y * y, 1e-6f));
+    return x < -1.0f ? -1.0f : min(x, 1.0f);
+}
+
+LobeOnFace lobe_on_face(const RayLight& light, Vec3x8 point, Vec3x8 along, Vec3x8 normal,
+                        f8 roughness) {
+    const vec3 across(light.across[0], light.across[1], light.across[2]);
+    const vec3 up(light.up[0], light.up[1], light.up[2]), shines = light.lamp.direction;
+    const vec3 half_across = across * (2.0f / dot(across, across)),
+               half_up = up * (2.0f / dot(up, up));
+    const f8 facing = -dot(along, normal);
+    const Vec3x8 ray = along + 2.0f * facing * normal;
+    const f8 into = dot(ray, shines), slant = min8(into, splat(-LEAST_SLANT));
+    const Vec3x8 to_middle = splat(light.lamp.position) - point;
+    const f8 before = dot(to_middle, shines), reach = before / slant;
+    const i8 ahead = (into < 0.0f) & (before < 0.0f);
+    if (!any(ahead)) return LobeOnFace{};
+    const Vec3x8 place = ray * reach - to_middle;
+    // Facets that slope in the plane of incidence turn the ray by twice as much, those that slope
+    // across it by less the more it grazes.
+    const Vec3x8 across_both = cross(normal, along);
+    const f8 sine2 = dot(across_both, across_both);
+    const f8 inverse_sine = 1.0f / sqrt8(max8(sine2, splat(HEAD_ON)));
+    const Vec3x8 side = where(sine2 > HEAD_ON, across_both * inverse_sine, across_of(normal));
+    const auto moved = [&](Vec3x8 turned) {
+        return (turned - ray * (dot(turned, shines) / slant)) * reach;
+    };
+    const Vec3x8 first = moved(cross(side, ray) * 2.0f),
+                 second = moved(side * (2.0f * abs8(facing)));
+    const f8 rough = roughness * roughness;
+    LobeOnFace r;
+    r.across =
+        axis_of(dot(place, half_across), dot(first, half_across), dot(second, half_across), rough);
+    r.up = axis_of(dot(place, half_up), dot(first, half_up), dot(second, half_up), rough);
+    r.share = ahead ? r.across.share * r.up.share : splat(0.0f);
+    return r;
+}
+
+Vec3x8 mirrored_faces(const Light& light, Vec3x8 point, Vec3x8 along, Vec3x8 normal, f8 roughness) {
+    Vec3x8 sum = splat(vec3(0.0f, 0.0f, 0.0f));
+    for (int64_t k = 0; k < light.mirrored_light_count; k++) {
+        const RayLight& l = light.mirrored_lights[k];
+        if (l.lamp.kind != LIGHT_AREA) continue;
+        sum = sum + lobe_on_face(l, point, along, normal, roughness).share * face_radiance(l);
+    }
+    return sum;
+}
+
+vec3 face_radiance(const RayLight& light) {
+    const vec3 across(light.across[0], light.across[1], light.across[2]);
+    const vec3 up(light.up[0], light.up[1], light.up[2]);
+    return light.lamp.colour * (1.0f / std::sqrt(dot(across, across) * dot(up, up)));
+}
+
+vec3 radiance_of_faces(const Light& light, vec3 from, vec3 ray, float end) {
+    vec3 sum(0.0f, 0.0f, 0.0f);
+    for (int64_t k = 0; k < light.mirrored_light_count; k++) {
+        const RayLight& l = light.mirrored_lights[k];
+        const float along = dot(ray, l.lamp.direction);
+        if (l.lamp.kind != LIGHT_AREA || along > -1e-6f) continue;
+        const vec3 to_middle = l.lamp.position - from;
+        const float distance = dot(to_middle, l.lamp.direction) / along;
+        if (!(distance > 0.0f && distance < end)) continue;
+        const vec3 place = ray * distance - to_middle;
+        const vec3 across(l.across[0], l.across[1], l.across[2]), up(l.up[0], l.up[1], l.up[2]);
+        if (std::fabs(dot(place, across)) > 0.5f * dot(across, across)) continue;
+        if (std::fabs(dot(place, up)) > 0.5f * dot(up, up)) continue;
+        sum = sum + face_radiance(l);
+    }
+    return sum;
+}
+
+}  // namespace sailenv
