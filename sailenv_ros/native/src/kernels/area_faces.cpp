@@ -1,4 +1,5 @@
-// What surfaces mirror of the faces of area lights, by the shape of GGX's lobe.
+// What surfaces mirror of the faces of area lights, by the shape of GGX's lobe. Glass and flat
+// mirrors show none: area lights have no body, and behind that of a window the sky is seen.
 //
 // The slopes of GGX's microfacets along an axis are spread as p(x) = a^2 / (2 (a^2 + x^2)^(3/2))
 // (Walter et al. 2007, "Microfacet models for refraction through rough surfaces", integrated over

@@ -1,7 +1,6 @@
 // See-through surfaces over a finished picture; the same model as shaders/glass.frag.
 #include <algorithm>
 
-#include "area_faces.h"
 #include "shade.h"
 #include "texture.h"
 
@@ -158,9 +157,6 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
         // What a pixel mirrors in many directions is as if it were rough.
         const f8 roughness = clamp8(curve.bend, part.roughness, 1.0f);
         mirrored = mirrored_light(light, part, point, direction, roughness);
-        if (light.baked && light.reflecting) {
-            mirrored = mirrored + mirrored_faces(light, point, -view, normal, roughness);
-        }
     }
     Vec3x8 around = light_around(light, part.id, normal, point);
     const f8 hidden = attribute(5) > 0.0f ? splat(0.0f) : attribute(6);

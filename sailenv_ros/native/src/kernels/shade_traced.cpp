@@ -402,7 +402,6 @@ void look_from_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, ui
         const vec3 along(ray.x[k], ray.y[k], ray.z[k]);
         const SceneHit met = closest_hit(*s.light->traced, begin, along, ENDLESS);
         if (!is_drawn(met)) continue;
-        found.light[k] = radiance_of_faces(*s.light, begin, along, met.hit.t);
         set_hit(met, begin, along, distance[k], USUAL_ANGLE, hits, count);
         of[count++] = k;
     }
@@ -410,7 +409,7 @@ void look_from_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, ui
     shade_hits(s, hits, count);
     for (int32_t j = 0; j < count; j++) {
         found.met |= 1u << of[j];
-        found.light[of[j]] = found.light[of[j]] + vector_at(hits.light, j);
+        found.light[of[j]] = vector_at(hits.light, j);
     }
 }
 
