@@ -5,7 +5,7 @@
 // (Walter et al. 2007, "Microfacet models for refraction through rough surfaces", integrated over
 // the other axis), of which the share below x is 1/2 + x / (2 sqrt(a^2 + x^2)). Where facets slope,
 // the mirrored ray moves over the plane of the face; along each of the face's axes the lobe is
-// taken to spread by itself.
+// taken to spread by itself. Wide lobes are met at points of the face instead.
 #include "area_faces.h"
 
 #include <cmath>
@@ -22,6 +22,12 @@ constexpr float LEAST_SLANT = 1e-3f;
 constexpr float NARROWEST = 1e-4f;
 // Square of the sine to the normal up to where the plane of incidence is any.
 constexpr float HEAD_ON = 1e-8f;
+
+// Width of a lobe, in halves of the narrower side, from where on points tell of it, and alone.
+constexpr float NARROW = 0.3f, WIDE = 0.6f;
+// Places and weights of Gauss and Legendre along an axis from -1 to 1.
+constexpr float PLACES[3] = {-0.7745967f, 0.0f, 0.7745967f};
+constexpr float WEIGHTS[3] = {5.0f / 9.0f, 8.0f / 9.0f, 5.0f / 9.0f};
 
 f8 share_below(f8 x) { return 0.5f + 0.5f * x / sqrt8(1.0f + x * x); }
 
@@ -63,7 +69,7 @@ LobeOnFace lobe_on_face(const RayLight& light, Vec3x8 point, Vec3x8 along, Vec3x
     const Vec3x8 to_middle = splat(light.lamp.position) - point;
     const f8 before = dot(to_middle, shines), reach = before / slant;
     const i8 ahead = (into < 0.0f) & (before < 0.0f);
-    if (!any(ahead)) return LobeOnFace{};
+    if (!any(before < 0.0f)) return LobeOnFace{};
     const Vec3x8 place = ray * reach - to_middle;
     // Facets that slope in the plane of incidence turn the ray by twice as much, those that slope
     // across it by less the more it grazes.
@@ -83,6 +89,41 @@ LobeOnFace lobe_on_face(const RayLight& light, Vec3x8 point, Vec3x8 along, Vec3x
     r.up = axis_of(dot(place, half_up), dot(first, half_up), dot(second, half_up), rough);
     r.share = ahead ? r.across.share * r.up.share : splat(0.0f);
     return r;
+}
+
+f8 share_of_wide_lobe(const RayLight& light, const LobeOnFace& met, Vec3x8 point, Vec3x8 along,
+                      Vec3x8 normal, f8 roughness, f8 head_on) {
+    const f8 width = min8(met.across.width, met.up.width);
+    const f8 wide = smoothstep(NARROW, WIDE, width);
+    if (!any(wide > 0.0f)) return met.share;
+    const vec3 across(light.across[0], light.across[1], light.across[2]);
+    const vec3 up(light.up[0], light.up[1], light.up[2]);
+    const float quarter = 0.25f * std::sqrt(dot(across, across) * dot(up, up));
+    const f8 square = roughness * roughness, a2 = square * square;
+    const f8 nv = min8(abs8(dot(normal, along)) + 1e-4f, splat(1.0f));
+    f8 sent = splat(0.0f);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            const vec3 place =
+                light.lamp.position + across * (0.5f * PLACES[i]) + up * (0.5f * PLACES[j]);
+            const Vec3x8 to = splat(place) - point;
+            const f8 distance2 = lamp_square(to);
+            const Vec3x8 towards = to * (1.0f / sqrt8(distance2));
+            Vec3x8 halfway = towards - along;
+            halfway = halfway * inverse_length(halfway);
+            const f8 nl = max8(dot(normal, towards), splat(0.0f));
+            const f8 nh = clamp8(dot(normal, halfway), 0.0f, 1.0f);
+            const f8 vh = clamp8(-dot(along, halfway), 0.0f, 1.0f);
+            const f8 fresnel = head_on + (1.0f - head_on) * schlick_share(vh);
+            const f8 seen =
+                lamp_falloff(light.lamp, distance2, -dot(towards, light.lamp.direction));
+            const f8 lobe = nl > 0.0f ? microfacet_lobe(a2, nl, nv, nh) * nl : splat(0.0f);
+            sent = sent + (WEIGHTS[i] * WEIGHTS[j] * quarter) * (fresnel * lobe * seen);
+        }
+    }
+    const f8 even = head_on * mirrored_scale(roughness, nv) + mirrored_bias(roughness, nv);
+    const f8 share = clamp8(sent / max8(even, splat(1e-3f)), 0.0f, 1.0f);
+    return met.share + (share - met.share) * wide;
 }
 
 Vec3x8 mirrored_faces(const Light& light, Vec3x8 point, Vec3x8 along, Vec3x8 normal, f8 roughness) {

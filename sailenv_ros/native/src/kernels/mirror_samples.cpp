@@ -232,15 +232,19 @@ void look_at_faces(const Shading& s, const Chunk& c, MirrorSample* const* sample
     for (int64_t n = 0; n < light.mirrored_light_count; n++) {
         const RayLight& l = light.mirrored_lights[n];
         if (l.lamp.kind != LIGHT_AREA) continue;
-        const float radiance = luminance(face_radiance(l));
+        const vec3 radiance = face_radiance(l);
         for (int32_t i = 0; i < c.padded; i += 8) {
-            const Vec3x8 ray = c.ray.at(i);
-            const LobeOnFace met = lobe_on_face(l, c.point.at(i), ray * inverse_length(ray),
-                                                c.normal.at(i), load(c.roughness + i));
+            const Vec3x8 ray = c.ray.at(i), along = ray * inverse_length(ray);
+            const Vec3x8 point = c.point.at(i), normal = c.normal.at(i);
+            const f8 roughness = load(c.roughness + i);
+            const LobeOnFace met = lobe_on_face(l, point, along, normal, roughness);
+            const f8 head_on = luminance(reflectance_head_on(c.base.at(i), load(c.metallic + i)));
+            const f8 share = share_of_wide_lobe(l, met, point, along, normal, roughness, head_on);
             for (int32_t k = i; k < std::min(i + 8, c.count); k++) {
-                const float bright = radiance * met.share[k - i];
+                const float bright = luminance(radiance) * share[k - i];
                 if (!(bright > least)) continue;
                 MirrorSample& own = *samples[k];
+                own.faces = own.faces + radiance * share[k - i];
                 own.faces_met += bright;
                 if (sees_face(s, l, own, met, k - i)) own.faces_seen += bright;
             }

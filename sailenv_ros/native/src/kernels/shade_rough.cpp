@@ -44,6 +44,7 @@ void add_sample(const MirrorSample& sample, const Chunk& c, int32_t i, i8 wanted
 // What samples around eight pixels tell them of pictures of the room and of area lights.
 struct Told {
     Vec3x8 change = splat(vec3(0.0f, 0.0f, 0.0f));
+    Vec3x8 faces = splat(vec3(0.0f, 0.0f, 0.0f));
     f8 faces_share = splat(0.0f), faces_met = splat(0.0f), weight = splat(0.0f);
 
     // Of a sample in whose square's middle `near` would be highest.
@@ -54,6 +55,7 @@ struct Told {
         const f8 turned = clamp8((cosine - TURNED) * (1.0f / (1.0f - TURNED)), 0.0f, 1.0f);
         const f8 counts = own ? near * turned : splat(0.0f);
         change = change + counts * sample.change;
+        faces = faces + counts * sample.faces;
         faces_share = faces_share + counts * sample.faces_share;
         faces_met = faces_met + counts * sample.faces_met;
         weight = weight + counts;
@@ -131,19 +133,21 @@ void correct_mirrored(const Shading& s, const int32_t* x, const int32_t* y, Chun
                             (t.weight + ENOUGH_WEIGHT);
             const Vec3x8 changed = c.mirrored.at(i) + part * (t.change * scale + c.darkened.at(i));
             c.mirrored.set(i, max(changed, 0.0f));
-            // Where it is curved, what shines may lie between samples.
-            const i8 curved =
-                (roughness < ROUGH) & (s.table != nullptr ? splat(-1) : turned > 0.0f);
-            const i8 shone_at = wanted & (curved | (t.faces_met > 0.0f) | ~(t.weight > 0.0f));
-            if (any(shone_at)) {
+            const f8 seen = t.weight > 0.0f ? t.faces_share * scale : load(c.open + i);
+            const f8 kept = (1.0f - share_mirrored_around(roughness)) * seen;
+            const i8 smooth = roughness < ROUGH, sampled = t.weight > 0.0f;
+            faces = where(wanted & sampled, t.faces * (scale * kept), faces);
+            // Highlights of what is smooth have edges; where it is curved, they may lie between
+            // samples.
+            const i8 curved = s.table != nullptr ? splat(-1) : turned > 0.0f;
+            const i8 own = wanted & ((smooth & (curved | (t.faces_met > 0.0f))) | ~sampled);
+            if (any(own)) {
                 const Vec3x8 ray = c.ray.at(i);
-                const f8 seen = t.weight > 0.0f ? t.faces_share * scale : load(c.open + i);
-                const f8 kept = (1.0f - share_mirrored_around(roughness)) * seen;
                 // Normals within a pixel are turned by up to half of that either way.
                 const f8 within = sqrt8(roughness * roughness + 0.5f * turned);
                 const Vec3x8 all = mirrored_faces(
                     *s.light, c.point.at(i), ray * inverse_length(ray), c.normal.at(i), within);
-                faces = where(shone_at, all * kept, faces);
+                faces = where(own, all * kept, faces);
             }
         }
         c.faces.set(i, faces);
