@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "ray_types.h"
-#include "rays.h"
+#include "shade_chunk.h"
 
 namespace sailenv {
 namespace {
@@ -29,9 +29,19 @@ constexpr float NARROW = 0.3f, WIDE = 0.6f;
 constexpr float PLACES[3] = {-0.7745967f, 0.0f, 0.7745967f};
 constexpr float WEIGHTS[3] = {5.0f / 9.0f, 8.0f / 9.0f, 5.0f / 9.0f};
 
+vec3 whole_width(const RayLight& l) { return {l.across[0], l.across[1], l.across[2]}; }
+vec3 whole_height(const RayLight& l) { return {l.up[0], l.up[1], l.up[2]}; }
+
+float area_of(const RayLight& l) {
+    const vec3 across = whole_width(l), up = whole_height(l);
+    return std::sqrt(dot(across, across) * dot(up, up));
+}
+
+// Share of facets whose slope along an axis is below one, in widths of the lobe.
 f8 share_below(f8 x) { return 0.5f + 0.5f * x / sqrt8(1.0f + x * x); }
 
-// Of `spread`, the face's places to which facets of slope 1 move the ray.
+// Along an axis of a face: where the mirrored ray leads, and how far facets of slope 1 move it,
+// those that slope in the plane of incidence and those that slope across it.
 LobeOnFace::Axis axis_of(f8 middle, f8 first, f8 second, f8 rough) {
     LobeOnFace::Axis r;
     r.middle = middle;
@@ -57,10 +67,14 @@ float LobeOnFace::place(const Axis& axis, int lane, float part) {
     return x < -1.0f ? -1.0f : min(x, 1.0f);
 }
 
+vec3 place_on_face(const RayLight& light, float x, float y) {
+    return light.lamp.position + whole_width(light) * (0.5f * x) + whole_height(light) * (0.5f * y);
+}
+
 LobeOnFace lobe_on_face(const RayLight& light, Vec3x8 point, Vec3x8 along, Vec3x8 normal,
                         f8 roughness) {
-    const vec3 across(light.across[0], light.across[1], light.across[2]);
-    const vec3 up(light.up[0], light.up[1], light.up[2]), shines = light.lamp.direction;
+    const vec3 across = whole_width(light), up = whole_height(light);
+    const vec3 shines = light.lamp.direction;
     const vec3 half_across = across * (2.0f / dot(across, across)),
                half_up = up * (2.0f / dot(up, up));
     const f8 facing = -dot(along, normal);
@@ -96,17 +110,13 @@ f8 share_of_wide_lobe(const RayLight& light, const LobeOnFace& met, Vec3x8 point
     const f8 width = min8(met.across.width, met.up.width);
     const f8 wide = smoothstep(NARROW, WIDE, width);
     if (!any(wide > 0.0f)) return met.share;
-    const vec3 across(light.across[0], light.across[1], light.across[2]);
-    const vec3 up(light.up[0], light.up[1], light.up[2]);
-    const float quarter = 0.25f * std::sqrt(dot(across, across) * dot(up, up));
+    const float quarter = 0.25f * area_of(light);
     const f8 square = roughness * roughness, a2 = square * square;
     const f8 nv = min8(abs8(dot(normal, along)) + 1e-4f, splat(1.0f));
     f8 sent = splat(0.0f);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            const vec3 place =
-                light.lamp.position + across * (0.5f * PLACES[i]) + up * (0.5f * PLACES[j]);
-            const Vec3x8 to = splat(place) - point;
+            const Vec3x8 to = splat(place_on_face(light, PLACES[i], PLACES[j])) - point;
             const f8 distance2 = lamp_square(to);
             const Vec3x8 towards = to * (1.0f / sqrt8(distance2));
             Vec3x8 halfway = towards - along;
@@ -121,7 +131,8 @@ f8 share_of_wide_lobe(const RayLight& light, const LobeOnFace& met, Vec3x8 point
             sent = sent + (WEIGHTS[i] * WEIGHTS[j] * quarter) * (fresnel * lobe * seen);
         }
     }
-    const f8 even = head_on * mirrored_scale(roughness, nv) + mirrored_bias(roughness, nv);
+    const Mirroring term = mirroring(roughness, nv);
+    const f8 even = head_on * term.x + term.y;
     const f8 share = clamp8(sent / max8(even, splat(1e-3f)), 0.0f, 1.0f);
     return met.share + (share - met.share) * wide;
 }
@@ -136,11 +147,7 @@ Vec3x8 mirrored_faces(const Light& light, Vec3x8 point, Vec3x8 along, Vec3x8 nor
     return sum;
 }
 
-vec3 face_radiance(const RayLight& light) {
-    const vec3 across(light.across[0], light.across[1], light.across[2]);
-    const vec3 up(light.up[0], light.up[1], light.up[2]);
-    return light.lamp.colour * (1.0f / std::sqrt(dot(across, across) * dot(up, up)));
-}
+vec3 face_radiance(const RayLight& light) { return light.lamp.colour * (1.0f / area_of(light)); }
 
 vec3 radiance_of_faces(const Light& light, vec3 from, vec3 ray, float end) {
     vec3 sum(0.0f, 0.0f, 0.0f);
@@ -152,7 +159,7 @@ vec3 radiance_of_faces(const Light& light, vec3 from, vec3 ray, float end) {
         const float distance = dot(to_middle, l.lamp.direction) / along;
         if (!(distance > 0.0f && distance < end)) continue;
         const vec3 place = ray * distance - to_middle;
-        const vec3 across(l.across[0], l.across[1], l.across[2]), up(l.up[0], l.up[1], l.up[2]);
+        const vec3 across = whole_width(l), up = whole_height(l);
         if (std::fabs(dot(place, across)) > 0.5f * dot(across, across)) continue;
         if (std::fabs(dot(place, up)) > 0.5f * dot(up, up)) continue;
         sum = sum + face_radiance(l);

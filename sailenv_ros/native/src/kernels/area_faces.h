@@ -33,6 +33,9 @@ Vec3x8 mirrored_faces(const Light& light, Vec3x8 point, Vec3x8 along, Vec3x8 nor
 f8 share_of_wide_lobe(const RayLight& light, const LobeOnFace& met, Vec3x8 point, Vec3x8 along,
                       Vec3x8 normal, f8 roughness, f8 head_on);
 
+// The point of a face at a place from -1 to 1 along each axis.
+vec3 place_on_face(const RayLight& light, float x, float y);
+
 // Radiance of an area light's face.
 vec3 face_radiance(const RayLight& light);
 

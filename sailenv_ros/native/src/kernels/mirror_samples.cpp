@@ -3,7 +3,7 @@
 // A point in each square of pixels looks along rays of its lobe, and points around it share what
 // these meet. Of most surfaces one ray tells how wrong pictures of the room are there, and another
 // whether an area light is seen; rough ones that mirror much look along as many rays as tell all
-// they mirror. What pixels do with samples: shade_rough.cpp.
+// they mirror. What pixels do with samples: shade_sampled.cpp.
 #include "mirror_samples.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 #include "../threads.h"
 #include "area_faces.h"
-#include "shade_rough.h"
+#include "shade_sampled.h"
 #include "traced_hits.h"
 
 namespace sailenv {
@@ -195,9 +195,9 @@ void look(const Shading& s, const Chunk& c, MirrorSample* const* samples,
                 light.reflection_points[light.reflection_table[own.id]];
             const float bright =
                 max(MOST_OF_MEAN * seen_from.light[0], LIGHT_GREY / light.exposure);
-            own.apart =
-                own.apart + (no_brighter(met, bright) - no_brighter(picture, bright)) * one.weight;
-            own.apart_weight += one.weight;
+            own.difference = own.difference +
+                             (no_brighter(met, bright) - no_brighter(picture, bright)) * one.weight;
+            own.difference_weight += one.weight;
             if (!own.of_room) continue;
             const float near = one.weight * one.near, open = one.weight - near;
             own.near = own.near + met * near;
@@ -215,9 +215,7 @@ bool sees_face(const Shading& s, const RayLight& light, const MirrorSample& samp
     const auto part = [](int32_t k) { return (static_cast<float>(k) + 0.5f) / 16.0f; };
     const float x = LobeOnFace::place(met.across, lane, part(number));
     const float y = LobeOnFace::place(met.up, lane, part(other));
-    const vec3 across(light.across[0], light.across[1], light.across[2]);
-    const vec3 up(light.up[0], light.up[1], light.up[2]);
-    const vec3 to = light.lamp.position + across * (0.5f * x) + up * (0.5f * y) - sample.point;
+    const vec3 to = place_on_face(light, x, y) - sample.point;
     const float distance = std::sqrt(dot(to, to));
     if (dot(to, sample.normal) < LEAST_RISE * distance) return false;
     return closest_hit(*s.light->traced, sample.point, to * (1.0f / distance),
@@ -315,7 +313,8 @@ void find_samples(const Shading& s, int32_t row, int32_t first_row, int32_t end_
     }
 }
 
-// Calls found(other, weight) for the samples around one that share with it, and for itself.
+// Calls found(other, columns, rows) for the samples around one that share with it, and for itself;
+// they are so many squares apart.
 template <class Found>
 void around(const MirrorSamples& samples, const MirrorSample& own, const Found& found) {
     const int32_t column = own.seen.pixel_x / SQUARE, row = own.seen.pixel_y / SQUARE;
@@ -326,12 +325,17 @@ void around(const MirrorSamples& samples, const MirrorSample& own, const Found& 
             for (int32_t face = 0; face < FACES; face++) {
                 const MirrorSample& other = square[face];
                 if (other.id != own.id || !(dot(other.normal, own.normal) > ALIKE)) continue;
-                const vec3 apart = other.point - own.point;
-                const float away = std::sqrt(dot(apart, apart)) * (1.0f / FAR_REACH_M);
-                found(other, 1.0f / (1.0f + away + 0.5f * away * away));
+                found(other, x, y);
             }
         }
     }
+}
+
+// How much what is far from one sample counts for another.
+float shared_far(const MirrorSample& own, const MirrorSample& other) {
+    const vec3 apart = other.point - own.point;
+    const float away = std::sqrt(dot(apart, apart)) * (1.0f / FAR_REACH_M);
+    return 1.0f / (1.0f + away + 0.5f * away * away);
 }
 
 // Looks along the rays of a row's samples: of those that mirror much with few around them along
@@ -350,8 +354,8 @@ void look_around(const Shading& s, int32_t row, MirrorSamples& samples) {
             ray_counts[c.count] = 1;
             if (next->of_room) {
                 float shared = 0.0f;
-                around(samples, *next, [&](const MirrorSample& other, float weight) {
-                    shared += other.of_room ? weight : 0.0f;
+                around(samples, *next, [&](const MirrorSample& other, int32_t, int32_t) {
+                    if (other.of_room) shared += shared_far(*next, other);
                 });
                 const int32_t times = static_cast<int32_t>(ENOUGH / shared);
                 ray_counts[c.count] = RAYS * std::min(std::max(times, 1), MOST_TIMES);
@@ -374,7 +378,9 @@ void look_around(const Shading& s, int32_t row, MirrorSamples& samples) {
 vec3 with_far(const MirrorSamples& samples, const MirrorSample& own) {
     vec3 far(0.0f, 0.0f, 0.0f);
     float open = 0.0f;
-    around(samples, own, [&](const MirrorSample& other, float weight) {
+    around(samples, own, [&](const MirrorSample& other, int32_t, int32_t) {
+        if (!other.of_room) return;
+        const float weight = shared_far(own, other);
         far = far + other.far * weight;
         open += other.open * weight;
     });
@@ -385,20 +391,18 @@ vec3 with_far(const MirrorSamples& samples, const MirrorSample& own) {
 
 // Tells by how much pictures of the room are wrong, and which share of area lights is seen.
 void mean_around(const MirrorSamples& samples, MirrorSample& own) {
-    vec3 apart(0.0f, 0.0f, 0.0f);
+    vec3 difference(0.0f, 0.0f, 0.0f);
     float weight = 0.0f, seen = 0.0f, met = 0.0f;
-    around(samples, own, [&](const MirrorSample& other, float) {
-        const int32_t columns = other.seen.pixel_x / SQUARE - own.seen.pixel_x / SQUARE;
-        const int32_t rows = other.seen.pixel_y / SQUARE - own.seen.pixel_y / SQUARE;
+    around(samples, own, [&](const MirrorSample& other, int32_t columns, int32_t rows) {
         // One ray each is few, however far apart they are in the world.
         const float counts = static_cast<float>((FAR_SQUARES + 1 - std::abs(columns)) *
                                                 (FAR_SQUARES + 1 - std::abs(rows)));
-        apart = apart + other.apart * counts;
-        weight += other.apart_weight * counts;
+        difference = difference + other.difference * counts;
+        weight += other.difference_weight * counts;
         seen += other.faces_seen * counts;
         met += other.faces_met * counts;
     });
-    own.change = weight > 0.0f ? apart * (1.0f / weight) : apart;
+    own.correction = weight > 0.0f ? difference * (1.0f / weight) : difference;
     own.faces_share = met > 0.0f ? seen / met : 1.0f;
 }
 

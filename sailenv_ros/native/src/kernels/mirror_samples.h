@@ -20,9 +20,9 @@ struct MirrorSample {
     float weight = 0.0f, open = 0.0f;
     vec3 mirrored = {0.0f, 0.0f, 0.0f};  // radiance
     // What rays met less what pictures of the room have; its mean over samples around.
-    vec3 apart = {0.0f, 0.0f, 0.0f};
-    float apart_weight = 0.0f;
-    vec3 change = {0.0f, 0.0f, 0.0f};
+    vec3 difference = {0.0f, 0.0f, 0.0f};
+    float difference_weight = 0.0f;
+    vec3 correction = {0.0f, 0.0f, 0.0f};
     // Radiance of the faces of area lights that it mirrors if nothing is in the way; luminance of
     // those it sees, and of all; the share that samples around see.
     vec3 faces = {0.0f, 0.0f, 0.0f};

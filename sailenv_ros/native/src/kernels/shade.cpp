@@ -1,7 +1,7 @@
 // Light of opaque surfaces and of the sky: the same model as shaders/lighting.frag and sky.frag.
 //
 // A band is walked down in chunks of pixels, which go through one stage after the other:
-// shade_gather.cpp, shade_material.cpp, shade_around.cpp, shade_reflections.cpp, shade_rough.cpp,
+// shade_gather.cpp, shade_material.cpp, shade_around.cpp, shade_reflections.cpp, shade_sampled.cpp,
 // shade_traced.cpp, shade_combine.cpp.
 #include "shade.h"
 

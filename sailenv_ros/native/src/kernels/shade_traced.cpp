@@ -2,7 +2,7 @@
 //
 // What a ray meets is lit like what the camera sees, and mirrors the pictures of the room. Where a
 // surface bends within a pixel, rays go by other normals from pixel to pixel. For rough ones see
-// shade_rough.cpp.
+// shade_sampled.cpp.
 #include <algorithm>
 #include <cstring>
 

@@ -3,7 +3,7 @@
 // What a lobe meets changes slowly from pixel to pixel: pixels take over what the points around
 // them tell. Of most surfaces these tell by how much pictures of the room are wrong; of rough ones
 // that mirror much, all that is mirrored.
-#include "shade_rough.h"
+#include "shade_sampled.h"
 
 #include "area_faces.h"
 #include "mirror_samples.h"
@@ -41,9 +41,10 @@ void add_sample(const MirrorSample& sample, const Chunk& c, int32_t i, i8 wanted
     weight = weight + counts;
 }
 
-// What samples around eight pixels tell them of pictures of the room and of area lights.
-struct Told {
-    Vec3x8 change = splat(vec3(0.0f, 0.0f, 0.0f));
+// Weighted sums over the samples around eight pixels: corrections of pictures of the room, and what
+// they know of area lights.
+struct Interpolated {
+    Vec3x8 correction = splat(vec3(0.0f, 0.0f, 0.0f));
     Vec3x8 faces = splat(vec3(0.0f, 0.0f, 0.0f));
     f8 faces_share = splat(0.0f), faces_met = splat(0.0f), weight = splat(0.0f);
 
@@ -54,7 +55,7 @@ struct Told {
         const f8 cosine = dot(c.normal.at(i), sample.normal);
         const f8 turned = clamp8((cosine - TURNED) * (1.0f / (1.0f - TURNED)), 0.0f, 1.0f);
         const f8 counts = own ? near * turned : splat(0.0f);
-        change = change + counts * sample.change;
+        correction = correction + counts * sample.correction;
         faces = faces + counts * sample.faces;
         faces_share = faces_share + counts * sample.faces_share;
         faces_met = faces_met + counts * sample.faces_met;
@@ -82,9 +83,10 @@ LANES_INLINE void around_pixels(const MirrorSamples& samples, i8 x, i8 y, i8 wan
     }
 }
 
-Told told(const MirrorSamples& samples, const Chunk& c, int32_t i, i8 x, i8 y, i8 wanted) {
+Interpolated interpolate(const MirrorSamples& samples, const Chunk& c, int32_t i, i8 x, i8 y,
+                         i8 wanted) {
     constexpr float SIDE = SQUARE, MIDDLE = 0.5f * (SQUARE - 1);
-    Told r;
+    Interpolated r;
     around_pixels(samples, x, y, wanted,
                   [&](const MirrorSample* square, int32_t column, int32_t row, i8 here) {
                       const f8 across = abs8(to_float(x - SQUARE * column) - MIDDLE);
@@ -123,7 +125,7 @@ void correct_mirrored(const Shading& s, const int32_t* x, const int32_t* y, Chun
         const i8 wanted = (roughness < ROUGHEST) & ~load(c.empty + i);
         Vec3x8 faces = splat(vec3(0.0f, 0.0f, 0.0f));
         if (any(wanted)) {
-            const Told t = told(*s.samples, c, i, load(x + i), load(y + i), wanted);
+            const Interpolated t = interpolate(*s.samples, c, i, load(x + i), load(y + i), wanted);
             const f8 scale = 1.0f / max8(t.weight, splat(1e-20f));
             // Where normals turn, mirrored rays turn twice as far.
             const Vec3x8 bend = c.bend.at(i);
@@ -131,8 +133,9 @@ void correct_mirrored(const Shading& s, const int32_t* x, const int32_t* y, Chun
             const f8 part = (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness)) *
                             (1.0f - smoothstep(FLAT, BENT, 2.0f * turned)) * t.weight /
                             (t.weight + ENOUGH_WEIGHT);
-            const Vec3x8 changed = c.mirrored.at(i) + part * (t.change * scale + c.darkened.at(i));
-            c.mirrored.set(i, max(changed, 0.0f));
+            const Vec3x8 corrected =
+                c.mirrored.at(i) + part * (t.correction * scale + c.darkened.at(i));
+            c.mirrored.set(i, max(corrected, 0.0f));
             const f8 seen = t.weight > 0.0f ? t.faces_share * scale : load(c.open + i);
             const f8 kept = (1.0f - share_mirrored_around(roughness)) * seen;
             const i8 smooth = roughness < ROUGH, sampled = t.weight > 0.0f;
