@@ -87,6 +87,23 @@ def test_where_a_shadow_ends_blocks_tell_the_share(render: Render) -> None:
     assert inside.sum() > 20
 
 
+def test_shadows_of_what_moves_begin_where_it_stands(render: Render) -> None:
+    """On what is baked the edge lies where rays from the sun pass, within a texel of the map."""
+    sun = replace(SUN, direction=(1.0, 3.0, 0.0))
+    board = model_of(box_mesh((0.002, 2.5, 3.0)), roughness=1.0)
+    light = baked({1: chart(WALL, AHEAD)}, [layer(sun, visible=1.0)])
+    things = [Thing(WALL, AHEAD), Thing(board, Pose((2.901, -1.75, 0.0)))]
+    scene = snapshot_of(things, lights=(sun,), environment=DARK, baked=light)
+    camera = camera_at()
+    got = linear(render(scene, camera, "rgb")["rgb"])[camera.intrinsics.height // 2, :, 0]
+    y = -(np.arange(len(got)) - camera.intrinsics.cx) / camera.intrinsics.fx * 3.0
+    beside = (y > -0.5) & (y < 0.3)  # the board hides what lies farther
+    y, share = y[beside][::-1], got[beside][::-1] / got[beside].max()
+    assert share[0] < 0.05
+    # The board's edge lies at -0.5 m, a tenth of a metre before the wall.
+    assert np.interp(0.5, share, y) == pytest.approx(-0.5 + 0.1 * 3.0, abs=0.03)
+
+
 def test_what_moves_is_lit_from_the_probes(render: Render) -> None:
     """A surface without a chart has c0 + c . n, each colour with its own four numbers."""
     probes = np.zeros((4, 3))

@@ -104,7 +104,7 @@ class ShadowPlan:
     """
 
     def __init__(self) -> None:
-        self._spheres = _Spheres()
+        self._boxes = _Boxes()
         self._keys: list[tuple[object, ...]] = []
         self._contents: SceneContents | None = None
         self._direction: tuple[float, ...] = ()
@@ -135,12 +135,13 @@ class ShadowPlan:
         casting : (N,) bool or None
             Which instances cast; None for all.
         framed : (N,) bool or None
-            Which instances the map encloses; None for all.
+            Which instances, that stand still, the map encloses; None for all.
         """
         self._follow(snapshot.contents)
         poses = _steady(snapshot)
         everything = np.ones(len(poses), bool)
         casting = everything if casting is None else casting
+        still = framed is not None
         framed = everything if framed is None else framed
         same = (
             self._direction == light.direction
@@ -156,7 +157,7 @@ class ShadowPlan:
         moved |= deforming  # what deforms is never taken to rest
         self._direction, self._poses, self._shapes = light.direction, poses, snapshot.deformations
         self._casting, self._framed = casting, framed
-        self._fit(light, snapshot, poses, framed)
+        self._fit(light, snapshot, poses, framed, still)
         if self._is_stale(casting):
             # Drawn apart only when it is needed a second time: what goes on moving never is.
             self._at_rest, self._rest_poses, self._rest_drawn = casting & ~moved, poses, False
@@ -229,11 +230,12 @@ class ShadowPlan:
         snapshot: WorldSnapshot,
         poses: NDArray[np.float64],
         framed: NDArray[np.bool_],
+        still: bool,
     ) -> None:
         """Enclose the framed instances, if that is not done yet."""
         light_from_world = _light_axes(light)
-        spheres = self._spheres.of(snapshot.contents, poses)
-        low, high = _caster_bounds(light_from_world, spheres, framed)
+        boxes = self._boxes.of(snapshot.contents, light_from_world @ poses, framed, still)
+        low, high = _caster_bounds(*boxes)
         frame = light.direction, low.tobytes(), high.tobytes()
         if self._frame == frame:
             return
@@ -299,47 +301,59 @@ def _projection(
     return clip, width
 
 
-class _Spheres:
-    """Spheres around the instances of the contents seen last, in their own frames."""
+class _Boxes:
+    """Boxes around the instances of the contents seen last, in their own frames."""
 
     def __init__(self) -> None:
         self._instances: tuple[DrawnInstance, ...] | None = None
-        self._middles = np.zeros((0, 3))
-        self._radii = np.zeros(0)
+        self._middles = self._halves = np.zeros((0, 3))
+        self._casting = np.zeros(0, bool)
 
     def of(
-        self, contents: SceneContents, poses: NDArray[np.float64]
+        self,
+        contents: SceneContents,
+        light_from_body: NDArray[np.float64],
+        framed: NDArray[np.bool_],
+        still: bool,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return centres in the world (N, 3) and radii (N,) [m]; 0 for what casts no shadow."""
+        """Return centres and half extents (K, 3) of what is framed and casts [m].
+
+        They are along the light's axes. Where it may turn, a sphere is meant: so it turns within
+        bounds that stay.
+        """
         self._know(contents)
-        centres = (poses[:, :3, :3] @ self._middles[:, :, None])[:, :, 0] + poses[:, :3, 3]
-        return centres, self._radii
+        counts = framed & self._casting
+        turned, halves = light_from_body[counts, :3, :3], self._halves[counts]
+        centres = _turned(turned, self._middles[counts]) + light_from_body[counts, :3, 3]
+        if still:
+            return centres, _turned(np.abs(turned), halves)
+        radii = np.linalg.norm(halves, axis=1, keepdims=True)
+        return centres, np.broadcast_to(radii, halves.shape)
 
     def _know(self, contents: SceneContents) -> None:
         if self._instances is contents.instances:
             return
         self._instances = contents.instances
         boxes = _boxes(contents.instances)
-        extents = boxes[:, 1] - boxes[:, 0]
         self._middles = boxes.mean(axis=1)
-        casting = _casting(contents.instances, boxes)
-        self._radii = np.where(casting, 0.5 * np.linalg.norm(extents, axis=1), 0.0)
+        self._halves = 0.5 * (boxes[:, 1] - boxes[:, 0])
+        self._casting = _casting(contents.instances, boxes)
+
+
+def _turned(turn: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return (K, 3): each vector turned by its own (3, 3)."""
+    return (turn @ vectors[:, :, None])[:, :, 0]
 
 
 def _caster_bounds(
-    light_from_world: NDArray[np.float64],
-    spheres: tuple[NDArray[np.float64], NDArray[np.float64]],
-    framed: NDArray[np.bool_],
+    centres: NDArray[np.float64], halves: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the lowest and highest corner, in the light's axes, of what is framed and can cast."""
-    centres, radii = spheres
+    """Return the lowest and highest corner of boxes along the light's axes, in steps."""
     # What has been flung out of the world must not take the map along.
     near = (np.abs(centres) <= FARTHEST_M).all(axis=1)
-    counts = framed & (radii > 0.0) & near
-    if not counts.any():
+    if not near.any():
         return np.full(3, -5.0), np.full(3, 5.0)
-    seen, around = centres[counts] @ light_from_world[:3, :3].T, radii[counts, None]
-    low, high = (seen - around).min(axis=0), (seen + around).max(axis=0)
+    low, high = (centres - halves)[near].min(axis=0), (centres + halves)[near].max(axis=0)
     # What receives the shadow may lie behind the last caster.
     high[2] += 6.0
     return np.floor(low / BOUNDS_STEP_M) * BOUNDS_STEP_M, np.ceil(

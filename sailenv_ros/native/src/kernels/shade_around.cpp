@@ -34,9 +34,16 @@ struct MapPlace {
     f8 x, y, near;  // in the shadow map, 0 to 1; 1 - depth
 };
 
-LANES_INLINE MapPlace in_shadow_map(const Light& light, const Chunk& c, int32_t i, f8 facing) {
-    const f8 lift = light.texel_m * (1.0f + 2.0f * (1.0f - facing));
-    const Vec3x8 place = light.map_from_world * (c.point.at(i) + c.normal.at(i) * lift);
+// How far above its surface a point is looked up, lest this casts shadows on itself [texels]:
+// between four texels, or around that.
+LANES_INLINE f8 lift_between_texels(f8 facing) {
+    return 0.2f + 1.5f * sqrt8(max8(1.0f - facing * facing, splat(0.0f)));
+}
+LANES_INLINE f8 lift_around(f8 facing) { return 1.0f + 2.0f * (1.0f - facing); }
+
+LANES_INLINE MapPlace in_shadow_map(const Light& light, const Chunk& c, int32_t i, f8 lift) {
+    const Vec3x8 above = c.point.at(i) + c.normal.at(i) * (lift * light.texel_m);
+    const Vec3x8 place = light.map_from_world * above;
     return {place.x, place.y, 1.0f - clamp8(place.z, 0.0f, 1.0f)};
 }
 
@@ -150,7 +157,9 @@ void light_from_bake(const Shading& s, Chunk& c) {
         const i8 asked = there & (facing > 0.0f) & (~mapped | (share > 0.0f));
         f8 arrives = splat(0.0f);
         if (has_main && any(asked)) {
-            const MapPlace place = in_shadow_map(light, c, i, facing);
+            // What stands still is not among what casts into the map of what moves.
+            const f8 lift = mapped ? splat(0.0f) : lift_between_texels(facing);
+            const MapPlace place = in_shadow_map(light, c, i, lift);
             f8 past = share;
             if (any(asked & ~mapped)) {
                 const f8 standing = lit_share(light.static_shadow.inverse_depth, light.shadow_size,
@@ -173,7 +182,7 @@ void light_from_sky(const Shading& s, Chunk& c) {
         const f8 facing = dot(c.normal.at(i), light.main_towards);
         f8 arrives = splat(0.0f);
         if (has_main && any(~load(c.empty + i) & (facing > 0.0f))) {
-            const MapPlace p = in_shadow_map(light, c, i, facing);
+            const MapPlace p = in_shadow_map(light, c, i, lift_around(facing));
             const float across[4] = {0.94f, -0.34f, -0.94f, 0.34f},
                         down[4] = {0.34f, 0.94f, -0.34f, -0.94f};
             for (int k = 0; k < 4; k++) {

@@ -33,9 +33,9 @@ uniform sampler2D edge_blocks;     // 6 by 6 shares of main light each, 128 bloc
 
 const float PI = 3.14159265;
 
-vec3 in_shadow_map(vec3 point, vec3 normal, float slope) {
-    vec3 lifted = point + normal * shadow_texel.x * (1.0 + 2.0 * slope);
-    return (shadow_from_optical * vec4(lifted, 1.0)).xyz;
+// `lift`: how far above its surface a point is looked up, lest this casts shadows on itself [texels].
+vec3 in_shadow_map(vec3 point, vec3 normal, float lift) {
+    return (shadow_from_optical * vec4(point + normal * shadow_texel.x * lift, 1.0)).xyz;
 }
 
 #ifdef BAKED
@@ -115,24 +115,28 @@ void main() {
     float nv = abs(dot(normal, view)) + 1e-4;
     vec3 world_normal = world_from_optical * normal;
     float facing = dot(normal, main_towards);
-    vec3 in_shadow = in_shadow_map(point, normal, 1.0 - facing);
 #ifdef BAKED
+    vec2 place = texelFetch(light_at, pixel, 0).xy;
+    float charted = place.x > 0.0 ? 1.0 : 0.0;
+    // What stands still is not among what casts into the map of what moves.
+    float mapped_main = charted * main_baked;
+    float lift = 0.2 + 1.5 * sqrt(max(1.0 - facing * facing, 0.0));
+    vec3 in_shadow = in_shadow_map(point, normal, (1.0 - mapped_main) * lift);
     // What moves casts edges of one texel; soft shadows of what stands still are in the light map.
     float main_arrives = texture(shadow_map, in_shadow);
-    vec2 place = texelFetch(light_at, pixel, 0).xy;
     vec4 mapped = textureLod(light_map, place, 0.0);
     int id = int(texelFetch(surface, pixel, 0).y + 0.5);
     vec3 place_in_world = world_from_optical * point + eye;
     vec3 probed = light_of_instance(id, world_normal, place_in_world);
     // What has no place in the light map has there the share that it hides of itself.
     for (int k = 0; k < 3; k++) probed[k] *= arriving_share(place.y, diffuse[k]);
-    float charted = place.x > 0.0 ? 1.0 : 0.0;
     vec3 around = mix(probed, mapped.rgb, charted);
     float past_what_stands = main_transmittance * texture(static_shadow_map, in_shadow);
     float known = edge_share(place, mapped.a);
-    main_arrives *= mix(past_what_stands, known, charted * main_baked);
+    main_arrives *= mix(past_what_stands, known, mapped_main);
     vec3 reflected = around;
 #else
+    vec3 in_shadow = in_shadow_map(point, normal, 1.0 + 2.0 * (1.0 - facing));
     float main_arrives = four_taps(shadow_map, in_shadow);
     vec3 around = light_of_sky(world_normal);
 #endif
