@@ -80,12 +80,13 @@ def folded(b: PieceBuilder, room: Box) -> None:
                     break
 
 
-def hung_clothes(b: PieceBuilder, room: Box) -> None:
-    """Hang clothes on a rail below the top of a hollow."""
+def hung_clothes(b: PieceBuilder, room: Box, *, rail: bool = True) -> None:
+    """Hang clothes on a rail below the top of a hollow; without `rail` there is one."""
     size, middle = room.size, room.middle
     z = room.high[2] - 0.06
-    rail = [(middle[0], room.low[1], z), (middle[0], room.high[1], z)]
-    b.form(metal("chrome"), swept(rail, 0.012, sides=12), collides="none")
+    if rail:
+        bar = [(middle[0], room.low[1], z), (middle[0], room.high[1], z)]
+        b.form(metal("chrome"), swept(bar, 0.012, sides=12), collides="none")
     with b.part("clothes", "clothes"):
         y = room.low[1] + 0.05
         while y < room.high[1] - 0.05:

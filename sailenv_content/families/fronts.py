@@ -102,7 +102,8 @@ def front_panel(
         b.box(
             material,
             (size[0] * 0.6, size[1] - 0.002, size[2] - 0.002),
-            (middle[0] - 0.2 * size[0], middle[1], middle[2]),
+            # Its back lies behind those of the boards, not in their plane.
+            (middle[0] - 0.2 * size[0] - 0.0005, middle[1], middle[2]),
             collides=False,
         )
         b.collide(size, middle)

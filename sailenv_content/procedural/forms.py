@@ -86,14 +86,15 @@ def circle(count: int = 32) -> Floats:
 def lathe(profile: ArrayLike, segments: int = 32) -> RawMesh:
     """Return what a lathe makes of a profile: rows of radius and height [m], from the base up.
 
-    A hollow thing's profile goes up outside and down inside. Ends off the axis are closed.
+    A hollow thing's profile goes up outside and down inside. Ends off the axis are closed, but not
+    those of a profile that comes back to where it began: it makes a ring.
     """
     outline = np.asarray(profile, np.float64)
     ring = circle(segments)
     rings = np.empty((len(outline), segments, 3))
     rings[..., :2] = outline[:, None, :1] * ring
     rings[..., 2] = outline[:, 1:]
-    return loft(rings)
+    return loft(rings, caps=not np.array_equal(outline[0], outline[-1]))
 
 
 def upright_ring(place: Vector3, radius_y: float, radius_z: float, count: int = 32) -> Floats:

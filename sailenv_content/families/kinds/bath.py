@@ -168,7 +168,7 @@ def _shower(b: PieceBuilder, v: Values) -> None:
     wall, edge = s / 2 - 0.02, 0.1
     mid = (h + edge) / 2
     with b.part("pane", "shower"):
-        b.box(pane, (s - 0.05, 0.008, h - edge), (0.0, wall, mid), bevel=0.002)
+        b.box(pane, (s - 0.05, 0.008, h - edge - 0.01), (0.0, wall, mid - 0.005), bevel=0.002)
     for x, y in ((wall, wall), (wall, -wall), (-wall, wall)):
         b.box(v.metal, (0.022, 0.022, h - edge), (x, y, mid))
     for x, y, size in (

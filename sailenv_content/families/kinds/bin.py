@@ -149,7 +149,7 @@ def _sorting(b: PieceBuilder, v: Values) -> None:
     for number in range(v.count + 1):
         b.box(
             v.coat,
-            (d, 0.012, h - 0.03),
+            (d - 0.024, 0.012, h - 0.03),
             (0.0, number * (each - 0.012 / v.count) + 0.006 - w / 2, 0.03 + (h - 0.03) / 2),
             bevel=0.003,
         )

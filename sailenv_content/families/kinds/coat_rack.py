@@ -128,7 +128,8 @@ def _rail(b: PieceBuilder, v: Values) -> None:
     for k in range(4):
         x = (k + 0.5) / 4 * d - d / 2
         b.box(v.material, (0.07, w - 0.05, 0.014), (x, 0.0, 0.097))
-    hung_clothes(b, Box((-0.24, -w / 2 + 0.03, 0.3), (0.24, w / 2 - 0.03, h + 0.06)))
+    room = Box((-0.24, -w / 2 + 0.03, 0.3), (0.24, w / 2 - 0.03, h + 0.06))
+    hung_clothes(b, room, rail=False)
 
 
 def _hall(b: PieceBuilder, v: Values) -> None:

@@ -62,10 +62,12 @@ def _leaf(b: PieceBuilder, v: Values) -> None:
         b.box(PAPER, size, mid, bevel=0.0005, collides=False)
         for share in np.linspace(0, 1, v.rows + 1)[1:-1]:
             z = field.low[2] + share * size[2]
-            b.box(v.material, (0.014, size[1], 0.009), (0, 0, z), bevel=0.001, collides=False)
+            bar_size = (0.014, size[1] - 0.002, 0.009)
+            b.box(v.material, bar_size, (0, 0, z), bevel=0.001, collides=False)
         for share in np.linspace(0, 1, v.columns + 1)[1:-1]:
             y = field.low[1] + share * size[1]
-            b.box(v.material, (0.012, 0.009, size[2]), (0, y, mid[2]), bevel=0.001, collides=False)
+            bar_size = (0.012, 0.009, size[2] - 0.002)
+            b.box(v.material, bar_size, (0, y, mid[2]), bevel=0.001, collides=False)
     elif v.kind == "cane":
         b.form(
             v.reed,

@@ -117,7 +117,7 @@ def _door(
             size = (deep, float(liner.size[1]) - 2 * inset + 0.03, 0.006)
             mid = (liner.low[0] - deep / 2, float(liner.middle[1]), row.low[2] + 0.003)
             b.box(LINER, size, mid, bevel=0.001)
-            front = (liner.low[0] - deep + 0.003, mid[1], row.low[2] + 0.03)
+            front = (liner.low[0] - deep + 0.003, mid[1], row.low[2] + 0.031)
             b.box(glass("#dfe9ee", 0.15), (0.005, size[1], 0.06), front, bevel=0.001)
             shelf = Box(
                 (liner.low[0] - deep, mid[1] - size[1] / 2 + 0.03, row.low[2] + 0.006),

@@ -151,7 +151,7 @@ def _visor(b: PieceBuilder, v: Values) -> None:
     turn = np.linspace(-1.0, 1.0, 21)
     front = np.stack([d - 0.1 * turn**2, w / 2 * turn], axis=-1)
     outline = np.concatenate([front, [(0.0, w / 2), (0.0, -w / 2)]])
-    b.form(v.pane, extruded(outline, 0.008, bevel=0.002), (0.0, 0.0, 0.05), collides="box")
+    b.form(v.pane, extruded(outline, 0.008, bevel=0.002), (0.002, 0.0, 0.05), collides="box")
     b.box(v.body, (0.36, 0.62 * w, 0.07), (0.18, 0.0, 0.03), bevel=0.008)
     _underside(b, 0.36, 0.6 * w, -0.006)
     b.box(

@@ -75,7 +75,7 @@ def _kettle(b: PieceBuilder, v: Values) -> None:
     body = v.body if not v.see_through else PANE
     b.form(body, vessel(rows, wall=0.003, floor=0.006, segments=40), (0.0, 0.0, z), volume=2e-4)
     if v.see_through:
-        foot = [(0, 0), (1.012 * r, 0), (1.012 * r, 0.03), (0, 0.03)]
+        foot = [(0, -0.001), (1.012 * r, -0.001), (1.012 * r, 0.03), (0, 0.03)]
         b.form(v.body, turned(foot, segments=36), (0, 0, z), collides="none", volume=1e-4)
         water = smooth_profile([(0.955 * r, 0.032), (0.93 * r, 0.3 * h), (0.9 * r, 0.45 * h)], 6)
         drink = turned(np.concatenate([[(0, 0.032)], water, [(0, 0.45 * h)]]), segments=30)

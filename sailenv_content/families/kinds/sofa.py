@@ -38,7 +38,7 @@ def rolled(b: PieceBuilder, v: Values) -> None:
         pad(
             b,
             v.cover,
-            (d - 0.03, v.arm * 0.8, v.arm_height - r - base),
+            (d - 0.04, v.arm * 0.8, v.arm_height - r - base),
             (0.0, y, (v.arm_height - r + base) / 2),
             puff=0.0,
             radius=0.02,
