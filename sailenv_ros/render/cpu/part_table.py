@@ -36,7 +36,7 @@ from sailenv_ros.render.scene.drawn_meshes import (
     unwrappings,
 )
 from sailenv_ros.render.scene.material_factors import glow_alone, material_factors
-from sailenv_ros.render.scene.shadow_plan import casts
+from sailenv_ros.render.scene.shadow_casters import casts
 from sailenv_ros.types.deformation import MovedMesh
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.model import Material, Model

@@ -17,7 +17,7 @@ from sailenv_ros.render.gl.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.gl.materials import BatchKind, MaterialBuffers
 from sailenv_ros.render.scene.drawn_meshes import chart_table, drawn_meshes
 from sailenv_ros.render.scene.material_factors import EMISSION_SCALE, glow_alone
-from sailenv_ros.render.scene.shadow_plan import casts
+from sailenv_ros.render.scene.shadow_casters import casts
 from sailenv_ros.types.deformation import MovedMesh
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import SceneContents, WorldSnapshot

@@ -7,12 +7,13 @@ has changed; then what has not moved is copied from a second map, where it was d
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.render.scene.shadow_casters import CasterBoxes
 from sailenv_ros.types.deformation import Deformation
 from sailenv_ros.types.lights import Light
 from sailenv_ros.types.snapshot import (
@@ -22,44 +23,12 @@ from sailenv_ros.types.snapshot import (
     steady_poses,
 )
 
-__all__ = ["SIZE_PX", "ShadowPlan", "ShadowRedraw", "casts"]
-
-LARGEST_SHEET_M = 12.0
-LARGEST_CASTER_M = 40.0
-"""Bodies with a longer diagonal (sheets without thickness: grounds; and still larger solids)
-receive shadows and cast none: they would stretch the shadow map to their own size."""
-
-FARTHEST_M = 1e5
-
-BOUNDS_STEP_M = 0.125
-"""Bounds of the map are multiples of this [m]: things that move in a room leave the map, and so
-all that was drawn into it at rest, as it is."""
+__all__ = ["SIZE_PX", "ShadowPlan", "ShadowRedraw"]
 
 SETTLED_UPDATES = 10
 """Updates after which a thing that stands still is drawn into the second map, too."""
 
 SIZE_PX = 1024
-
-
-def casts(drawn: DrawnInstance) -> bool:
-    """Return whether a body casts a shadow: walls and ceilings of halls do, grounds do not."""
-    return bool(_casting([drawn], _boxes([drawn]))[0])
-
-
-def _boxes(instances: Sequence[DrawnInstance]) -> NDArray[np.float64]:
-    """Return (N, 2, 3): lowest and highest corner of each, in its own frame [m]."""
-    bounds = np.array([drawn.model.bounds() for drawn in instances]).reshape(-1, 2, 3)
-    scales = np.array([drawn.scale for drawn in instances], np.float64).reshape(-1, 1, 3)
-    boxes: NDArray[np.float64] = bounds * scales
-    return boxes
-
-
-def _casting(instances: Sequence[DrawnInstance], boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    extents = boxes[:, 1] - boxes[:, 0]
-    largest = np.where(extents.min(axis=1) < 1e-3, LARGEST_SHEET_M, LARGEST_CASTER_M)
-    outside = np.array([drawn.outside is not None for drawn in instances], bool)
-    casting: NDArray[np.bool_] = (np.linalg.norm(extents, axis=1) <= largest) & ~outside
-    return casting
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -104,7 +73,7 @@ class ShadowPlan:
     """
 
     def __init__(self) -> None:
-        self._boxes = _Boxes()
+        self._boxes = CasterBoxes()
         self._keys: list[tuple[object, ...]] = []
         self._contents: SceneContents | None = None
         self._direction: tuple[float, ...] = ()
@@ -234,8 +203,8 @@ class ShadowPlan:
     ) -> None:
         """Enclose the framed instances, if that is not done yet."""
         light_from_world = _light_axes(light)
-        boxes = self._boxes.of(snapshot.contents, light_from_world @ poses, framed, still)
-        low, high = _caster_bounds(*boxes)
+        placed = light_from_world @ poses
+        low, high = self._boxes.bounds(snapshot.contents, placed, framed, still=still)
         frame = light.direction, low.tobytes(), high.tobytes()
         if self._frame == frame:
             return
@@ -299,63 +268,3 @@ def _projection(
         -(far + near) / (far - near),
     ]
     return clip, width
-
-
-class _Boxes:
-    """Boxes around the instances of the contents seen last, in their own frames."""
-
-    def __init__(self) -> None:
-        self._instances: tuple[DrawnInstance, ...] | None = None
-        self._middles = self._halves = np.zeros((0, 3))
-        self._casting = np.zeros(0, bool)
-
-    def of(
-        self,
-        contents: SceneContents,
-        light_from_body: NDArray[np.float64],
-        framed: NDArray[np.bool_],
-        still: bool,
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return centres and half extents (K, 3) of what is framed and casts [m].
-
-        They are along the light's axes. Where it may turn, a sphere is meant: so it turns within
-        bounds that stay.
-        """
-        self._know(contents)
-        counts = framed & self._casting
-        turned, halves = light_from_body[counts, :3, :3], self._halves[counts]
-        centres = _turned(turned, self._middles[counts]) + light_from_body[counts, :3, 3]
-        if still:
-            return centres, _turned(np.abs(turned), halves)
-        radii = np.linalg.norm(halves, axis=1, keepdims=True)
-        return centres, np.broadcast_to(radii, halves.shape)
-
-    def _know(self, contents: SceneContents) -> None:
-        if self._instances is contents.instances:
-            return
-        self._instances = contents.instances
-        boxes = _boxes(contents.instances)
-        self._middles = boxes.mean(axis=1)
-        self._halves = 0.5 * (boxes[:, 1] - boxes[:, 0])
-        self._casting = _casting(contents.instances, boxes)
-
-
-def _turned(turn: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return (K, 3): each vector turned by its own (3, 3)."""
-    return (turn @ vectors[:, :, None])[:, :, 0]
-
-
-def _caster_bounds(
-    centres: NDArray[np.float64], halves: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the lowest and highest corner of boxes along the light's axes, in steps."""
-    # What has been flung out of the world must not take the map along.
-    near = (np.abs(centres) <= FARTHEST_M).all(axis=1)
-    if not near.any():
-        return np.full(3, -5.0), np.full(3, 5.0)
-    low, high = (centres - halves)[near].min(axis=0), (centres + halves)[near].max(axis=0)
-    # What receives the shadow may lie behind the last caster.
-    high[2] += 6.0
-    return np.floor(low / BOUNDS_STEP_M) * BOUNDS_STEP_M, np.ceil(
-        high / BOUNDS_STEP_M
-    ) * BOUNDS_STEP_M
