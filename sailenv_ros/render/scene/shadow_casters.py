@@ -1,4 +1,4 @@
-"""What casts into a shadow map, and the box along the light that encloses it."""
+"""Bodies that cast into a shadow map, and the box along the light that encloses them."""
 
 from __future__ import annotations
 
