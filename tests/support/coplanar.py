@@ -1,55 +1,51 @@
-"""Faces of different materials that lie in one plane and face the same way: which is seen?"""
+"""Faces of different parts of a model that lie in one plane and face the same way."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sailenv_ros.rays.model_triangles import triangles_of
 from sailenv_ros.types.model import Model
 
 WITHIN_M = 2e-4
-"""Planes nearer than this count as one [m]."""
+"""Steps by which the heights of planes are rounded [m]."""
+
+LEAST_M2 = 1e-7
+"""Smaller triangles have no plane of their own [m²]."""
 
 PLACES = np.array([[1, 1, 1], [3, 1, 1], [1, 3, 1], [1, 1, 3]]) / np.array([[3], [5], [5], [5]])
 """Weights of corners at the points of a triangle that stand for it."""
 
 
-def shared_faces(model: Model) -> dict[tuple[int, int], float]:
-    """Return the area [m²] by two parts: of the first's triangles that lie on the second's."""
-    meshes = [part.mesh for part in model.parts]
-    corners = np.concatenate([mesh.positions[mesh.triangles] for mesh in meshes]).astype(float)
-    parts = np.repeat(np.arange(len(meshes)), [len(mesh.triangles) for mesh in meshes])
+def shared_faces(model: Model) -> dict[int, float]:
+    """Return the area of each part's triangles that lies on triangles of other parts [m²]."""
+    triangles = triangles_of(model)
+    real = triangles.areas_m2 > LEAST_M2
+    areas, parts = triangles.areas_m2[real], triangles.part[real]
+    corners = triangles.corners[real].astype(np.float64)
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    size = np.linalg.norm(across, axis=1)
-    real = size > 2e-7
-    corners, parts, size = corners[real], parts[real], size[real]
-    normals = across[real] / size[:, None]
+    normals = across / (2.0 * areas[:, None])
     heights = np.einsum("nk,nk->n", corners[:, 0], normals)
     keys = np.rint(np.column_stack([normals * 200.0, heights / WITHIN_M])).astype(np.int64)
-    found: dict[tuple[int, int], float] = {}
     _, planes = np.unique(keys, axis=0, return_inverse=True)
-    order = np.argsort(planes.reshape(-1), kind="stable")
-    for plane in np.split(order, np.flatnonzero(np.diff(planes.reshape(-1)[order])) + 1):
+    planes = planes.reshape(-1)
+    order = np.argsort(planes, kind="stable")
+    found: dict[int, float] = {}
+    for plane in np.split(order, np.flatnonzero(np.diff(planes[order])) + 1):
         for part in set(parts[plane].tolist()):
             own, others = plane[parts[plane] == part], plane[parts[plane] != part]
-            if not len(others):
-                continue
-            points = np.einsum("pc,ncx->npx", PLACES, corners[own])
-            for other in set(parts[others].tolist()):
-                chosen = others[parts[others] == other]
-                covered = _covered(points.reshape(-1, 3), corners[chosen])
-                area = float(covered.reshape(len(own), -1).mean(axis=1) @ size[own] / 2.0)
-                if area > 0.0:
-                    found[part, other] = found.get((part, other), 0.0) + area
+            if len(others):
+                points = np.einsum("pc,ncx->npx", PLACES, corners[own]).reshape(-1, 3)
+                share = _covered(points, corners[others]).reshape(len(own), -1).mean(axis=1)
+                found[part] = found.get(part, 0.0) + float(share @ areas[own])
     return found
 
 
 def _covered(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return (K,) bool: points that lie in any of some triangles of their plane."""
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    a, b, c = (np.einsum("nk,nk->n", *pair) for pair in (
-        (first, first), (first, second), (second, second)
-    ))  # fmt: skip
+    a, b, c = (first**2).sum(1), (first * second).sum(1), (second**2).sum(1)
     area = a * c - b * b
     inside = np.zeros(len(points), bool)
     for begin in range(0, len(points), 4096):
