@@ -14,6 +14,7 @@ from rosbags.rosbag2 import Reader
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
+from sailenv_msgs.msg import FrameInfo
 from sailenv_ros import Agent
 from sailenv_ros.errors import RecordingError
 from sailenv_ros.recording.bag_recovery import recover
@@ -249,6 +250,33 @@ def test_a_killed_simulator_is_told(tmp_path: Path) -> None:
             assert process.end() == status, process.log
         with RecordingReader(tmp_path / f"bag_{status}") as read:
             assert len(read)
+
+
+def test_the_last_frame_of_a_simulator_that_ends_is_recorded(tmp_path: Path) -> None:
+    """It waits for a recorder that is behind, so that its topics do not go before their images."""
+    settings = {"output": str(tmp_path / "bag"), "progress_interval_s": 0.1}
+    with (
+        NodeProcess("/ending", scene="optical", agent__width=32, agent__height=24) as simulator,
+        ToolProcess("recorder", "/ending", "Ctrl-C ends it", **settings) as process,
+        Probe("/ending") as probe,
+    ):
+        infos = probe.listen(FrameInfo, "agent/frame_info")
+        until(lambda: recorded(process) >= 3 and infos.messages, "frames to be recorded")
+        os.kill(process.pid, signal.SIGSTOP)
+        heard = len(infos.messages)
+        until(lambda: len(infos.messages) >= heard + 5, "frames that are not recorded yet")
+        simulator.signal(signal.SIGTERM)
+        capture = "/ending/agent/capture"
+        until(lambda: capture not in services(probe), "the agent's services to go")
+        os.kill(process.pid, signal.SIGCONT)
+        until(lambda: not simulator.alive, "its end")
+        assert process.end() == 0, process.log
+    with Agent.from_recording(tmp_path / "bag") as read:
+        assert read[len(read) - 1]["sequence"] == infos.last.sequence
+
+
+def services(probe: Probe) -> set[str]:
+    return {name for name, _ in probe.node.get_service_names_and_types()}
 
 
 def test_snapshots_are_written_on_request(tmp_path: Path) -> None:

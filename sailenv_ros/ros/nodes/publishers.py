@@ -30,7 +30,7 @@ from sailenv_ros.ros.nodes.diagnostics import AgentCounts, FrameCounter
 from sailenv_ros.ros.nodes.disparity_topics import DisparityTopics
 from sailenv_ros.ros.nodes.forward_motion_topics import ForwardMotionTopics
 from sailenv_ros.ros.nodes.object_topics import ObjectTopics
-from sailenv_ros.ros.nodes.qos import frame_qos, no_events, overriding
+from sailenv_ros.ros.nodes.qos import await_arrival, frame_qos, no_events, overriding
 from sailenv_ros.ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import FrameStream, Simulation
 from sailenv_ros.types.agents import AgentPose, AgentSpec
@@ -42,6 +42,9 @@ _log = logging.getLogger(__name__)
 
 LOOK_INTERVAL_S = 0.05
 """Interval at which subscriptions are checked while nothing is rendered [s]."""
+
+ARRIVAL_S = 1.0
+"""Time that the last frame is given to reach all its subscribers, before its topics go [s]."""
 
 
 class AgentPublisher:
@@ -170,13 +173,16 @@ class AgentPublisher:
             self._thread.join(1.0)
         with self._publishing:
             infos = (self._camera_info, self._frame_info, self._pose)
-            for publisher in (
+            publishers = (
                 *self._images.values(),
                 *infos,
                 *self._derived.publishers,
                 *self._late.publishers,
                 *self._objects.publishers,
-            ):
+            )
+            # A reader that hears that a writer is gone drops what it has not looked at yet.
+            await_arrival(publishers, ARRIVAL_S)
+            for publisher in publishers:
                 self._node.destroy_publisher(publisher)
 
     # -- the thread ------------------------------------------------------------------------

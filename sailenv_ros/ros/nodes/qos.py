@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterable
+
+from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -13,6 +17,7 @@ from sailenv_ros.recording.topics import OfferedQos
 from sailenv_ros.ros.nodes.parameters import given_parameters
 
 __all__ = [
+    "await_arrival",
     "clock_qos",
     "command_qos",
     "diagnostics_qos",
@@ -90,6 +95,21 @@ def no_events() -> PublisherEventCallbacks:
     A subscriber whose quality of service does not fit is warned on its own side.
     """
     return PublisherEventCallbacks(use_default_callbacks=False)
+
+
+def await_arrival(publishers: Iterable[Publisher], timeout_s: float) -> bool:
+    """Wait until every reliable subscriber has what was published; return whether all have.
+
+    A subscriber that was suspended uses up the time, which is that of all publishers together.
+    """
+    deadline_s = time.monotonic() + timeout_s
+    for publisher in publishers:
+        # In short turns, as rclpy waits with Python's lock held.
+        while not publisher.wait_for_all_acked(Duration()):
+            if time.monotonic() >= deadline_s:
+                return False
+            time.sleep(0.002)
+    return True
 
 
 def _last_kept(depth: int = 1, *, reliable: bool = True, latched: bool = False) -> QoSProfile:
