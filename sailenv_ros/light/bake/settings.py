@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 __all__ = ["BAKE_VERSION", "INSIDE_SHARE", "BakeSettings", "drafted"]
 
-BAKE_VERSION = 19
+BAKE_VERSION = 20
 """Grows whenever the same scene and settings would give another result."""
 
 

@@ -1,8 +1,9 @@
 """Texels of surfaces whose relief is finer than they are: ribs, grooves, slats.
 
-From `Texels` and rays to `Texels`. The middle of such a texel lies on a crest, in a groove or
-under a rib by chance, which would show as stripes. A point stands for it that sees as much of the
-surroundings as the texel's points do on average. Knows no light.
+From `Texels` and rays to `Texels`. The middle of such a texel lies on a crest, in a groove, under
+a rib or in a panel's hollow by chance, which would show as stripes. A point stands for it that
+sees as much of the surroundings as those of the texel's points do on average that can be seen.
+Knows no light.
 """
 
 from __future__ import annotations
@@ -78,7 +79,12 @@ def with_typical_points(
     def choose(first: int, end: int) -> None:
         own = asked[first:end]
         points = _points_of(geometry, places, texels, own)
-        moves, one = _most_typical(geometry, scene, texels, points, own, sides[own])
+        covered = _are_covered(scene, points, sides[own])
+        # What is covered as a whole, the foot of a cupboard, is seen by nobody.
+        seen = np.flatnonzero(~covered.all(axis=1))
+        own = own[seen]
+        points = _some(points, seen)
+        moves, one = _most_typical(geometry, scene, texels, points, covered[seen], own, sides[own])
         moved = own[moves]
         triangle[moved], weights[moved], positions[moved], faces[moved] = one
         normals[moved] = normals_at(geometry, one.triangle, one.weights, one.faces)
@@ -107,9 +113,9 @@ def _sides_m(geometry: StaticGeometry, places: Floats) -> Floats:
 def _is_uneven(
     scene: RayScene, positions: Floats, faces: Floats, sides: Floats
 ) -> NDArray[np.bool_]:
-    """Return (N,) bool: texels on both sides of whose points something rises."""
+    """Return (N,) bool: texels with something close above their points, or on both sides."""
     origins = positions + faces * np.float32(RISE_M)
-    found = np.zeros(len(positions), bool)
+    found: NDArray[np.bool_] = scene.share_that_passes(origins, faces, REACH * sides) == 0.0
     for along in _across(faces):
         sides_passed = (
             scene.share_that_passes(origins, along * np.float32(sign), REACH * sides)
@@ -142,11 +148,22 @@ def _points_of(
     )
 
 
+def _some(points: TexelPoints, chosen: NDArray[np.bool_ | np.intp]) -> TexelPoints:
+    """Return the points of chosen texels."""
+    return TexelPoints(
+        points.triangle[chosen],
+        points.weights[chosen],
+        points.positions[chosen],
+        points.faces[chosen],
+    )
+
+
 def _most_typical(
     geometry: StaticGeometry,
     scene: RayScene,
     texels: Texels,
     points: TexelPoints,
+    covered: NDArray[np.bool_],
     chosen: NDArray[np.intp],
     sides: Floats,
 ) -> tuple[NDArray[np.bool_], TexelPoints]:
@@ -156,12 +173,15 @@ def _most_typical(
     facing = np.einsum("kpx,kx->kp", points.faces, texels.faces[chosen])
     owners = geometry.owner[points.triangle]
     useful &= (facing > LEAST_FACING) & (owners == owners[:, :1])
+    # Who looks at the texel sees hardly any point that something covers.
+    shown = useful & ~covered
+    useful = np.where(shown[:, 1:].any(axis=1, keepdims=True), shown, useful)
     # The middle says no more of the texel than the others.
     counted = useful[:, 1:]
     mean = (openness[:, 1:] * counted).sum(axis=1) / np.maximum(counted.sum(axis=1), 1)
     more = openness - mean[:, None]
     moves = counted.any(axis=1) & ~(useful[:, 0] & (np.abs(more[:, 0]) < ALIKE))
-    points = TexelPoints(*(array[moves] for array in points))
+    points = _some(points, moves)
     return moves, _between(points, more[moves], useful[moves], sides[moves])
 
 
@@ -186,6 +206,16 @@ def _between(
         return between
 
     return nearest._replace(weights=mixed(points.weights), positions=mixed(points.positions))
+
+
+def _are_covered(scene: RayScene, points: TexelPoints, sides: Floats) -> NDArray[np.bool_]:
+    """Return (K, P) bool: points with something close right above them."""
+    shape = points.triangle.shape
+    faces = points.faces.reshape(-1, 3)
+    origins = points.positions.reshape(-1, 3) + faces * np.float32(RISE_M)
+    passed = scene.share_that_passes(origins, faces, np.repeat(REACH * sides, shape[1]))
+    covered: NDArray[np.bool_] = (passed == 0.0).reshape(shape)
+    return covered
 
 
 def _openness(scene: RayScene, points: TexelPoints, sides: Floats) -> NDArray[np.float64]:

@@ -170,6 +170,31 @@ def nearest_point(
     return min(found, key=lambda one: one[0])
 
 
+def strip(left: float, right: float) -> list[list[tuple[float, float]]]:
+    """Return the two triangles of a rectangle from row 4 to row 20."""
+    a, b, c, d = (left, 4.0), (right, 4.0), (right, 20.0), (left, 20.0)
+    return [[a, b, c], [a, c, d]]
+
+
+@pytest.mark.parametrize(("width", "kept"), [(0.05, False), (0.9, True)])
+def test_a_texel_stands_for_no_sliver_at_the_edge_of_a_wide_triangle(
+    width: float, kept: bool
+) -> None:
+    """A bevel of a twentieth of a texel is dropped, a strip as wide as a texel is not."""
+    places = np.array(strip(3.2, 14.3) + strip(14.3, 14.3 + width), np.float32)
+    owner, weights = cover_texels(places, 24, 1.5)
+    rows = owner[5:19]
+    assert set(rows[:, 4:13].ravel()) <= {0, 1}
+    if kept:
+        assert set(rows[:, 14]) <= {2, 3}
+    else:
+        # Centres 14.5 and 15.5: the sliver is nearer to both; look-ups meet the first alone.
+        assert set(rows[:, 14]) <= {0, 1}
+        at = np.einsum("rc,rcx->rx", weights[5:19, 14], places[rows[:, 14]])
+        np.testing.assert_allclose(at[:, 0], 14.3, atol=1e-4)
+        assert set(rows[:, 15]) <= {2, 3}
+
+
 def test_texels_have_the_nearest_triangle_within_reach() -> None:
     """At its centre for the map, at 4 by 4 points for blocks, among the texels around."""
     rng = np.random.default_rng(3)

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
+#include <vector>
 
 #include "../abi.h"
 #include "../threads.h"
@@ -13,21 +15,24 @@ namespace {
 constexpr int64_t SIDE = 4, BORDERED = SIDE + 2;  // of a block of points; EDGE_POINTS
 constexpr int64_t POINTS = SIDE * SIDE;
 
-// The squared distance of a point from a triangle, and in `share` the nearest point's weights.
-double closest_point(const float* corners, double x, double y, float* share) {
+// Whether a triangle has a point, whose weights are in `share` then.
+bool contains(const float* corners, double x, double y, float* share) {
     const float ax = corners[0], ay = corners[1], bx = corners[2], by = corners[3], cx = corners[4],
                 cy = corners[5];
     const float area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-    if (static_cast<double>(std::fabs(area)) > 1e-9) {
-        const double wb = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area;
-        const double wc = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area;
-        if (wb >= 0.0 && wc >= 0.0 && wb + wc <= 1.0) {
-            share[0] = static_cast<float>(1.0 - wb - wc);
-            share[1] = static_cast<float>(wb);
-            share[2] = static_cast<float>(wc);
-            return 0.0;
-        }
-    }
+    if (!(static_cast<double>(std::fabs(area)) > 1e-9)) return false;
+    const double wb = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area;
+    const double wc = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area;
+    if (!(wb >= 0.0 && wc >= 0.0 && wb + wc <= 1.0)) return false;
+    share[0] = static_cast<float>(1.0 - wb - wc);
+    share[1] = static_cast<float>(wb);
+    share[2] = static_cast<float>(wc);
+    return true;
+}
+
+// The squared distance of a point from a triangle, and in `share` the nearest point's weights.
+double closest_point(const float* corners, double x, double y, float* share) {
+    if (contains(corners, x, y, share)) return 0.0;
     double best = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; k++) {
         const int next = (k + 1) % 3;
@@ -48,12 +53,53 @@ double closest_point(const float* corners, double x, double y, float* share) {
     return best;
 }
 
+// Calls `visit` with the number and the centre of each texel that may lie within reach.
+template <typename Visit>
+void for_texels(const float* corners, double reach, int64_t side, Visit visit) {
+    const float* c = corners;
+    const double last = static_cast<double>(side);
+    const double left = std::min(std::min(c[0], c[2]), c[4]) - reach;
+    const double right = std::max(std::max(c[0], c[2]), c[4]) + reach;
+    const double top = std::min(std::min(c[1], c[3]), c[5]) - reach;
+    const double bottom = std::max(std::max(c[1], c[3]), c[5]) + reach;
+    if (!(right > 0.0 && bottom > 0.0 && left < last && top < last)) return;
+    const int64_t x0 = static_cast<int64_t>(std::max(left, 0.0));
+    const int64_t x1 = static_cast<int64_t>(std::min(std::ceil(right), last));
+    const int64_t y0 = static_cast<int64_t>(std::max(top, 0.0));
+    const int64_t y1 = static_cast<int64_t>(std::min(std::ceil(bottom), last));
+    for (int64_t y = y0; y < y1; y++) {
+        for (int64_t x = x0; x < x1; x++) {
+            visit(y * side + x, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+        }
+    }
+}
+
+constexpr int SAMPLES = 8;       // along a side of the square in which look-ups meet a texel
+constexpr double SLIVER = 0.25;  // of what the widest triangle of a texel has
+
+// How much of a triangle looks a texel up: the bilinear weights of the points that it has.
+double looked_up(const float* corners, double x, double y) {
+    double sum = 0.0;
+    float share[3];
+    for (int i = 0; i < SAMPLES; i++) {
+        const double dy = (static_cast<double>(i) + 0.5) * 2.0 / SAMPLES - 1.0;
+        for (int j = 0; j < SAMPLES; j++) {
+            const double dx = (static_cast<double>(j) + 0.5) * 2.0 / SAMPLES - 1.0;
+            if (!contains(corners, x + dx, y + dy, share)) continue;
+            sum += (1.0 - std::fabs(dx)) * (1.0 - std::fabs(dy));
+        }
+    }
+    return sum;
+}
+
 }  // namespace
 }  // namespace sailenv
 
 // Gives each texel the triangle that is nearest to its centre, not farther than `reach`; of equally
-// near ones the first. places: (count, 3, 2) [texels]; owner: (side, side), -1 at first; weights:
-// (side, side, 3), of the corners; nearest: (side, side), the square of the reach at first.
+// near ones the first. Where that one is a sliver beside a wide one, as a bevel is, the wide one:
+// its light would be seen along the edge of that. places: (count, 3, 2) [texels]; owner: (side,
+// side), -1 at first; weights: (side, side, 3), of the corners; nearest: (side, side), the square
+// of the reach at first.
 SAILENV_KERNEL(cover_texels)
 (int64_t count, int64_t side, double reach, const float* places, int32_t* owner, float* weights,
  float* nearest) {
@@ -61,31 +107,42 @@ SAILENV_KERNEL(cover_texels)
     if (count < 0 || side < 1 || side > 65536 || !(reach >= 0.0 && reach < 16.0)) {
         return STATUS_INVALID_ARGUMENT;
     }
-    const double last = static_cast<double>(side);
     for (int64_t t = 0; t < count; t++) {
-        const float* c = places + 6 * t;
-        const double left = std::min(std::min(c[0], c[2]), c[4]) - reach;
-        const double right = std::max(std::max(c[0], c[2]), c[4]) + reach;
-        const double top = std::min(std::min(c[1], c[3]), c[5]) - reach;
-        const double bottom = std::max(std::max(c[1], c[3]), c[5]) + reach;
-        if (!(right > 0.0 && bottom > 0.0 && left < last && top < last)) continue;
-        const int64_t x0 = static_cast<int64_t>(std::max(left, 0.0));
-        const int64_t x1 = static_cast<int64_t>(std::min(std::ceil(right), last));
-        const int64_t y0 = static_cast<int64_t>(std::max(top, 0.0));
-        const int64_t y1 = static_cast<int64_t>(std::min(std::ceil(bottom), last));
-        for (int64_t y = y0; y < y1; y++) {
-            for (int64_t x = x0; x < x1; x++) {
-                const int64_t at = y * side + x;
-                if (nearest[at] == 0.0f) continue;
-                float share[3] = {0.0f, 0.0f, 0.0f};
-                const double far = closest_point(c, static_cast<double>(x) + 0.5,
-                                                 static_cast<double>(y) + 0.5, share);
-                if (!(far < nearest[at])) continue;
-                nearest[at] = static_cast<float>(far);
-                owner[at] = static_cast<int32_t>(t);
-                for (int k = 0; k < 3; k++) weights[3 * at + k] = share[k];
-            }
+        const float* corners = places + 6 * t;
+        for_texels(corners, reach, side, [&](int64_t at, double x, double y) {
+            if (nearest[at] == 0.0f) return;
+            float share[3] = {0.0f, 0.0f, 0.0f};
+            const double far = closest_point(corners, x, y, share);
+            if (!(far < nearest[at])) return;
+            nearest[at] = static_cast<float>(far);
+            owner[at] = static_cast<int32_t>(t);
+            for (int k = 0; k < 3; k++) weights[3 * at + k] = share[k];
+        });
+    }
+    try {
+        const size_t texels = static_cast<size_t>(side * side);
+        std::vector<float> most(texels, 0.0f), own(texels, 0.0f);
+        std::vector<int32_t> widest(texels, -1);
+        for (int64_t t = 0; t < count; t++) {
+            const float* corners = places + 6 * t;
+            for_texels(corners, 1.0, side, [&](int64_t at, double x, double y) {
+                const float seen = static_cast<float>(looked_up(corners, x, y));
+                if (owner[at] == static_cast<int32_t>(t)) own[static_cast<size_t>(at)] = seen;
+                if (!(seen > most[static_cast<size_t>(at)])) return;
+                most[static_cast<size_t>(at)] = seen;
+                widest[static_cast<size_t>(at)] = static_cast<int32_t>(t);
+            });
         }
+        for (int64_t at = 0; at < side * side; at++) {
+            const size_t k = static_cast<size_t>(at);
+            if (!(own[k] < static_cast<float>(SLIVER) * most[k])) continue;
+            owner[at] = widest[k];
+            closest_point(places + 6 * static_cast<int64_t>(widest[k]),
+                          static_cast<double>(at % side) + 0.5,
+                          static_cast<double>(at / side) + 0.5, weights + 3 * at);
+        }
+    } catch (const std::bad_alloc&) {
+        return STATUS_OUT_OF_MEMORY;
     }
     return STATUS_OK;
 }
