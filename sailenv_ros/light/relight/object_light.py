@@ -31,7 +31,7 @@ from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import direct_light_delta, gather_change
 from sailenv_ros.rays.model_triangles import triangles_of
 from sailenv_ros.rays.ray_patterns import low_discrepancy_points, sequence_points
-from sailenv_ros.rays.self_occlusion import LEAST_WEIGHT
+from sailenv_ros.rays.self_occlusion import LEAST_WEIGHT, vertex_occlusion
 from sailenv_ros.rays.static_geometry import PlacedModel
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
 from sailenv_ros.types.geometry import invert
@@ -55,6 +55,10 @@ STIFFNESS = np.array([0.0] + 3 * [1.3] + 24 * [0.26])
 HIDDEN_M = 0.1
 """Points that see nothing farther than a few centimetres are seldom seen, and count less: by the
 harmonic mean of the distances of what they see over this [m]."""
+
+
+LEAST_OPEN = 0.1
+"""Open share below which points tell too little of what arrives there to divide by it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -87,14 +91,18 @@ class SurfacePoints:
     """Points on models' surfaces, chosen once for each model and number."""
 
     def __init__(self) -> None:
-        self._made: dict[tuple[int, int], tuple[Model, Doubles, Doubles]] = {}
+        self._made: dict[tuple[int, int], tuple[Model, Doubles, Doubles, Doubles]] = {}
 
-    def of(self, model: Model, count: int) -> tuple[Doubles, Doubles]:
-        """Return (P, 3) positions and unit normals, in the model's own frame."""
+    def of(self, model: Model, count: int) -> tuple[Doubles, Doubles, Doubles]:
+        """Return (P, 3) positions and unit normals in the model's own frame, and (P,) open shares.
+
+        These say how much of the light from around the model itself leaves them; of models with
+        glass nothing is said.
+        """
         made = self._made.get((id(model), count))
         if made is None:
             made = self._made[id(model), count] = model, *_surface_points(model, count)
-        return made[1], made[2]
+        return made[1:]
 
 
 class ObjectLighting:
@@ -150,16 +158,26 @@ class ObjectLighting:
             Whether the object's own shadow counts on what it faces from near: for what it sends
             back there.
         """
-        world = self.world.with_more([self.placed(one) for one in near])
-        positions, normals = _placed_points(
-            thing, *self._points.of(thing.model, quality.object_points)
-        )
+        others = [self.placed(one) for one in near]
+        points, turned, share = self._points.of(thing.model, quality.object_points)
+        positions, normals = _placed_points(thing, points, turned)
+        solid = self._scene.shape_of(thing.model, thing.scale, None)
+        hides = not shading and bool((share < 1.0).any())
         own = None
         if shading:
-            solid = self._scene.shape_of(thing.model, thing.scale, None)
             alone = PlacedInstance(solid, thing.world_from_body, None, None, True, True)
             own, _ = ray_instances([alone])
+        if hides:
+            # In its folds light comes from where they are open, not from all around: what arrives
+            # there is found with the object itself, and over the share that drawing takes of it.
+            dark = np.zeros((6, 3 * self._layers), np.float32)
+            others.append(PlacedInstance(solid, thing.world_from_body, None, dark, True, True))
+        world = self.world.with_more(others)
         bounced, direct, weights = self._gathered(world, own, positions, normals, quality)
+        if hides:
+            share = np.maximum(share, LEAST_OPEN)
+            bounced, direct = bounced / share[:, None], direct / share[:, None]
+            weights = weights * share
         axes = thing.world_from_body[:3, :3].T
         fit = _fit(positions, normals, _counted(weights, normals, axes), axes)
         by_layer = (fit @ bounced).reshape(LIGHT_TERMS, self._layers, 3).transpose(1, 0, 2)
@@ -180,7 +198,7 @@ class ObjectLighting:
             probes, grid = self._scene.light_in_air, self._scene.baked.probes
             sent = sent_by_probes(probes, grid, thing.model, thing.scale, pose)
         else:
-            points = _placed_points(thing, *self._points.of(thing.model, QUICK.object_points))
+            points = _placed_points(thing, *self._points.of(thing.model, QUICK.object_points)[:2])
             sent = sent_by_light(
                 self.light_on(thing, (), QUICK, shading=True), *points, thing.model
             )
@@ -245,8 +263,8 @@ def _placed_points(
     return np.ascontiguousarray(placed, np.float32), np.ascontiguousarray(turned, np.float32)
 
 
-def _surface_points(model: Model, count: int) -> tuple[Doubles, Doubles]:
-    """Return (P, 3) positions and normals of points spread over a model's area, its own frame."""
+def _surface_points(model: Model, count: int) -> tuple[Doubles, Doubles, Doubles]:
+    """Return what `SurfacePoints.of` says, of points spread over a model's area."""
     every = triangles_of(model)
     solid = every.passes == 0.0
     chosen = solid if solid.any() else np.ones(len(solid), bool)
@@ -263,7 +281,14 @@ def _surface_points(model: Model, count: int) -> tuple[Doubles, Doubles]:
     points = np.einsum("pc,pcx->px", weights, corners[triangle])
     turned = np.einsum("pc,pcx->px", weights, normals[triangle])
     turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-12)
-    return points, turned
+    if not solid.all():
+        return points, turned, np.ones(count)
+    hidden = [
+        occlusion[part.mesh.triangles]
+        for part, occlusion in zip(model.parts, vertex_occlusion(model), strict=True)
+    ]
+    own = np.concatenate(hidden)[triangle]
+    return points, turned, 1.0 - np.einsum("pc,pc->p", weights, own)
 
 
 def _counted(weights: Doubles, normals: Floats, axes: Doubles) -> Doubles:

@@ -111,6 +111,34 @@ def test_what_stands_between_takes_a_lamps_light() -> None:
     assert np.abs(shaded.direct).max() == 0.0
 
 
+def test_light_in_an_open_box_comes_from_where_it_is_open() -> None:
+    """Above a black floor its inner sides see sky wherever they see out; its outer ones, half."""
+    half, tall, thick = 0.15, 0.15, 0.01
+    walls = [
+        ((thick, 2 * half, tall), (x, 0.0, 0.0)) for x in (-half + thick / 2, half - thick / 2)
+    ]
+    walls += [
+        ((2 * half, thick, tall), (0.0, y, 0.0)) for y in (-half + thick / 2, half - thick / 2)
+    ]
+    walls.append(((2 * half, 2 * half, thick), (0.0, 0.0, -tall / 2)))
+    parts = []
+    for size, at in walls:
+        (part,) = model_of(box_mesh(size), base_colour=BLACK).parts
+        moved_there = replace(part.mesh, positions=part.mesh.positions + np.array(at, np.float32))
+        parts.append(replace(part, mesh=moved_there))
+    box = Model(name="box", parts=tuple(parts))
+    floor = ground(20.0, base_colour=BLACK)
+    found = light_on(room((box, Pose((0.0, 0.0, 0.4))), environment=WHITE_SKY, floor=floor))
+    for sign in (-1.0, 1.0):
+        inner = value(
+            found, found.bounced[0, :, 1], (-sign, 0, 0), (sign * (half - thick), 0.0, 0.4)
+        )
+        outer = value(found, found.bounced[0, :, 1], (sign, 0, 0), (sign * half, 0.0, 0.4))
+        # Sides of one normal with unlike light, which 28 terms tell about.
+        assert outer == pytest.approx(0.4, rel=0.1)
+        assert inner == pytest.approx(0.8, rel=0.1)
+
+
 def test_sides_that_face_each_other_are_darker() -> None:
     """Of two black boxes side by side, 1 cm apart, the gap is dark and the other side is not."""
     pair = room((BOX, IN_THE_AIR), (BOX, Pose((0.21, 0.0, 1.0))), environment=WHITE_SKY)
