@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeAlias
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,6 +27,8 @@ pixel apart (see `half_pixels`) in a window of the picture."""
 Look: TypeAlias = Callable[[Camera, NDArray[np.bool_], Window], NDArray[np.float16]]
 """``look(camera, only, window)`` returns (h, w, 4): exposed radiance of some instances, without
 glass, in the window of the camera's picture."""
+
+_AROUND = tuple(np.indices((3, 3)).reshape(2, 9) - 1)
 
 
 def reflect(
@@ -75,12 +76,11 @@ def reflect(
         shown = shown * (mirror.tint + (1.0 - mirror.tint) * grazing)
         target = radiance[mirror.window]
         if partly.any():
-            # What the mirror had shown there is known from the pixels beside.
-            before, there = _mean_around(target[..., :3].astype(np.float32), whole)
-            partly &= there
-            more = covered[partly, None] * (shown[partly] - before[partly])
-            target[partly, :3] = np.maximum(target[partly, :3] + more, 0.0)
-            target[partly, 3] *= 1.0 - covered[partly]
+            at = np.nonzero(partly)
+            share = covered[at][:, None]
+            colour, around = target[..., :3], target[..., 3]
+            colour[at] = _beside(colour, covered, at) + share * shown[at]
+            around[at] *= 1.0 - covered[at]
         target[whole, :3] = shown[whole]
         target[whole, 3] = 0.0
 
@@ -94,15 +94,35 @@ def closer_window(window: Window) -> Window:
     )
 
 
-def _mean_around(
-    light: NDArray[np.float32], counted: NDArray[np.bool_]
-) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """Return the mean over 3 x 3 pixels of those that count, and where there are any."""
-    weights = cv2.blur(counted.astype(np.float32), (3, 3), borderType=cv2.BORDER_CONSTANT)
-    sums = cv2.blur(light * counted[..., None], (3, 3), borderType=cv2.BORDER_CONSTANT)
-    there = weights > 1e-3
-    means = sums / np.where(there, weights, 1.0)[..., None]
-    return means.astype(np.float32), there
+def _beside(
+    light: NDArray[np.float16], covered: NDArray[np.float32], at: tuple[NDArray[np.intp], ...]
+) -> NDArray[np.float32]:
+    """Return (N, 3) float32: the light of what pixels show beside the mirror.
+
+    Parameters
+    ----------
+    light : (h, w, 3) float16
+        With the mirror as it was drawn before.
+    covered : (h, w) float32
+        Share of each pixel that the mirror has.
+    at : two (N,) int
+        Row and column of pixels that it has in part.
+    """
+    own, share = light[at].astype(np.float32), covered[at][:, None]
+    near = np.stack([a[:, None] + b for a, b in zip(at, _AROUND, strict=True)])
+    rows, columns = np.clip(near, 0, np.array(covered.shape)[:, None, None] - 1)
+    values, shares = light[rows, columns].astype(np.float32), covered[rows, columns][..., None]
+    mirror, others = shares == 1.0, shares == 0.0
+    # What the mirror had shown there is known from the pixels beside.
+    sums = np.where(mirror, values, 0.0).sum(axis=1)
+    before = sums / np.maximum(mirror.sum(axis=1), 1)
+    rest = np.where(mirror.any(axis=1), own - share * before, (1.0 - share) * own)
+    # Only about, though: the rest is as what is there without the mirror.
+    alone = others.any(axis=1)
+    least = np.where(alone, np.where(others, values, np.inf).min(axis=1), 0.0)
+    most = np.where(alone, np.where(others, values, 0.0).max(axis=1), np.inf)
+    beside: NDArray[np.float32] = np.clip(rest, (1.0 - share) * least, (1.0 - share) * most)
+    return beside
 
 
 def _pixels(
