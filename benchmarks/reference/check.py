@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +65,7 @@ def cases() -> Mapping[str, Case]:
     grey = Material(base_colour=(ALBEDO, ALBEDO, ALBEDO, 1.0), roughness=1.0)
     white = Material(base_colour=(1.0, 1.0, 1.0, 1.0), roughness=1.0)
     metal = Material(base_colour=(0.7, 0.7, 0.7, 1.0), metallic=1.0, roughness=0.3)
+    silver = replace(metal, roughness=0.02)
     diffuse = ALBEDO / math.pi
     slanted, above = np.array([0.3, 0.2, -1.0]), (0.5, 0.3, 2.0)
     sun_cos = 1.0 / float(np.linalg.norm(slanted))
@@ -95,6 +96,7 @@ def cases() -> Mapping[str, Case]:
             material=white, environment=UNIFORM, expected=RADIANCE, tolerance=0.08
         ),
         "metal in sky": Case(material=metal, environment=UNIFORM, tolerance=0.08),
+        "mirror in sky": Case(material=silver, environment=UNIFORM, expected=0.7 * RADIANCE),
         "bump to x": Case(material=_tilted(0), lights=(sun,), expected=_tilted_light(0, diffuse)),
         "bump to y": Case(material=_tilted(1), lights=(sun,), expected=_tilted_light(1, diffuse)),
     }

@@ -33,6 +33,11 @@ def bsdf(material: Material, parts: Parts) -> Dict:
     """
     if material.alpha == "blend":
         return _see_through(material, parts)
+    if material.metallic == 1.0 and _is_plain(material) and material.roughness < LEAST_ROUGHNESS:
+        # Silvered glass: at the least roughness the sun's glare would still hide what it shows.
+        mirror = {"type": "conductor", "material": "none"}
+        colour = _base_colour(material, parts)
+        return {"type": "twosided", "bsdf": {**mirror, "specular_reflectance": colour}}
     inner: Dict = {
         "type": "sailenv_surface",
         "base_color": _base_colour(material, parts),
@@ -45,6 +50,12 @@ def bsdf(material: Material, parts: Parts) -> Dict:
     if material.alpha == "mask" and material.base_colour_texture is not None:
         return {"type": "mask", "opacity": _opacity(material, parts), "bsdf": inner}
     return inner
+
+
+def _is_plain(material: Material) -> bool:
+    """Return whether a material has neither reliefs nor a finish that varies."""
+    textures = (material.metallic_roughness_texture, material.normal_texture)
+    return material.alpha == "opaque" and all(texture is None for texture in textures)
 
 
 def emitter(material: Material, parts: Parts) -> Dict | None:
