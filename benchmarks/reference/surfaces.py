@@ -53,7 +53,7 @@ def bsdf(material: Material, parts: Parts) -> Dict:
 
 
 def _is_plain(material: Material) -> bool:
-    """Return whether a material has neither reliefs nor a finish that varies."""
+    """Return whether a material is opaque, without reliefs or a finish that varies."""
     textures = (material.metallic_roughness_texture, material.normal_texture)
     return material.alpha == "opaque" and all(texture is None for texture in textures)
 

@@ -79,7 +79,10 @@ def with_typical_points(
     def choose(first: int, end: int) -> None:
         own = asked[first:end]
         points = _points_of(geometry, places, texels, own)
-        covered = _are_covered(scene, points, sides[own])
+        shape = points.triangle.shape
+        at, turned = points.positions.reshape(-1, 3), points.faces.reshape(-1, 3)
+        each = np.repeat(sides[own], shape[1])
+        covered = _are_covered(scene, at, turned, each).reshape(shape)
         # What is covered as a whole, the foot of a cupboard, is seen by nobody.
         seen = np.flatnonzero(~covered.all(axis=1))
         own = own[seen]
@@ -115,7 +118,7 @@ def _is_uneven(
 ) -> NDArray[np.bool_]:
     """Return (N,) bool: texels with something close above their points, or on both sides."""
     origins = positions + faces * np.float32(RISE_M)
-    found: NDArray[np.bool_] = scene.share_that_passes(origins, faces, REACH * sides) == 0.0
+    found = _are_covered(scene, positions, faces, sides)
     for along in _across(faces):
         sides_passed = (
             scene.share_that_passes(origins, along * np.float32(sign), REACH * sides)
@@ -123,6 +126,15 @@ def _is_uneven(
         )
         found |= np.maximum(*sides_passed) == 0.0
     return found
+
+
+def _are_covered(
+    scene: RayScene, positions: Floats, faces: Floats, sides: Floats
+) -> NDArray[np.bool_]:
+    """Return (N,) bool: points with something close right above them."""
+    origins = positions + faces * np.float32(RISE_M)
+    covered: NDArray[np.bool_] = scene.share_that_passes(origins, faces, REACH * sides) == 0.0
+    return covered
 
 
 def _across(faces: Floats) -> tuple[Floats, Floats]:
@@ -206,16 +218,6 @@ def _between(
         return between
 
     return nearest._replace(weights=mixed(points.weights), positions=mixed(points.positions))
-
-
-def _are_covered(scene: RayScene, points: TexelPoints, sides: Floats) -> NDArray[np.bool_]:
-    """Return (K, P) bool: points with something close right above them."""
-    shape = points.triangle.shape
-    faces = points.faces.reshape(-1, 3)
-    origins = points.positions.reshape(-1, 3) + faces * np.float32(RISE_M)
-    passed = scene.share_that_passes(origins, faces, np.repeat(REACH * sides, shape[1]))
-    covered: NDArray[np.bool_] = (passed == 0.0).reshape(shape)
-    return covered
 
 
 def _openness(scene: RayScene, points: TexelPoints, sides: Floats) -> NDArray[np.float64]:

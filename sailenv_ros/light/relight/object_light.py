@@ -161,17 +161,15 @@ class ObjectLighting:
         others = [self.placed(one) for one in near]
         points, turned, share = self._points.of(thing.model, quality.object_points)
         positions, normals = _placed_points(thing, points, turned)
-        solid = self._scene.shape_of(thing.model, thing.scale, None)
         hides = not shading and bool((share < 1.0).any())
-        own = None
-        if shading:
-            alone = PlacedInstance(solid, thing.world_from_body, None, None, True, True)
-            own, _ = ray_instances([alone])
+        solid = self._scene.shape_of(thing.model, thing.scale, None)
+        dark = np.zeros((6, 3 * self._layers), np.float32)
+        alone = PlacedInstance(solid, thing.world_from_body, None, dark, True, True)
+        own = ray_instances([alone])[0] if shading else None
         if hides:
             # In its folds light comes from where they are open, not from all around: what arrives
             # there is found with the object itself, and over the share that drawing takes of it.
-            dark = np.zeros((6, 3 * self._layers), np.float32)
-            others.append(PlacedInstance(solid, thing.world_from_body, None, dark, True, True))
+            others.append(alone)
         world = self.world.with_more(others)
         bounced, direct, weights = self._gathered(world, own, positions, normals, quality)
         if hides:

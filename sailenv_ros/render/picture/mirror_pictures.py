@@ -29,6 +29,7 @@ Look: TypeAlias = Callable[[Camera, NDArray[np.bool_], Window], NDArray[np.float
 glass, in the window of the camera's picture."""
 
 _AROUND = tuple(np.indices((3, 3)).reshape(2, 9) - 1)
+"""Rows and columns of a pixel and its eight neighbours, from it."""
 
 
 def reflect(
