@@ -26,8 +26,9 @@ GUIDE_PASSES, GUIDE_SEED = 8, 100
 """Passes and seed of the pictures that guide the denoiser, enough to be free of noise: with 16
 samples the denoiser did not trust them, and blurred edges and textures."""
 
-MOSTLY_CLEAR = 0.2
-"""Faces of a lower opacity do not guide the denoiser: what lies behind them does."""
+MOSTLY_CLEAR, ALL = 0.2, 2.0
+"""Faces of a lower opacity do not guide the denoiser: what lies behind them does. Of others both
+do, by half each: guided by a net curtain alone, it blurs the window behind."""
 
 _GUIDES = {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal"}
 
@@ -70,16 +71,16 @@ def loaded(description: Any, parts: Path) -> Any:
     return made
 
 
-def traced(scene: Any, solid: Any, sensor: Any, samples: int) -> dict[str, Image]:
+def traced(scene: Any, solids: list[Any], sensor: Any, samples: int) -> dict[str, Image]:
     """Trace one view; the two halves of its samples tell how noisy it is.
 
-    What guides the denoiser is seen in `solid`, the scene without its glass: it would blur what
-    lies behind.
+    What guides the denoiser is the mean of what is seen in `solids`, the scene without its glass:
+    it would blur what lies behind.
     """
     seen = mi.load_dict(_GUIDES)
     guides = np.mean(
         [
-            _shot(solid, sensor, seen, PASS_SAMPLES, GUIDE_SEED + number)
+            _shot(solids[number % len(solids)], sensor, seen, PASS_SAMPLES, GUIDE_SEED + number)
             for number in range(GUIDE_PASSES)
         ],
         axis=0,
@@ -102,16 +103,16 @@ def traced(scene: Any, solid: Any, sensor: Any, samples: int) -> dict[str, Image
     }
 
 
-def without_glass(scene: Dict) -> Dict:
-    """Return a scene without what is mostly looked through."""
-    return {name: part for name, part in scene.items() if not _is_clear(part)}
+def without_glass(scene: Dict, opacity: float) -> Dict:
+    """Return a scene without what is see-through and of a lower opacity."""
+    return {name: part for name, part in scene.items() if not _is_clear(part, opacity)}
 
 
-def _is_clear(part: Any) -> bool:
+def _is_clear(part: Any, opacity: float) -> bool:
     surface = part.get("bsdf", {}) if isinstance(part, dict) else {}
     if surface.get("type") != "sailenv_see_through":
         return False
-    return max(surface["opacity"]["value"]) < MOSTLY_CLEAR
+    return max(surface["opacity"]["value"]) < opacity
 
 
 def _shot(scene: Any, sensor: Any, integrator: Any, samples: int, seed: int) -> Image:
@@ -145,11 +146,14 @@ def run(job: Dict) -> None:
     parts = Path(job["parts"])
     began = time.monotonic()
     scene = mi.load_dict(loaded(job["scene"], parts))
-    solid = mi.load_dict(loaded(without_glass(job["scene"]), parts))
+    guiding = [without_glass(job["scene"], opacity) for opacity in (MOSTLY_CLEAR, ALL)]
+    if guiding[0] == guiding[1]:
+        guiding.pop()
+    solids = [mi.load_dict(loaded(one, parts)) for one in guiding]
     print(f"{job['name']}: loaded in {time.monotonic() - began:.1f} s", flush=True)
     for view in job["views"]:
         began = time.monotonic()
-        images = traced(scene, solid, mi.load_dict(loaded(view["sensor"], parts)), job["samples"])
+        images = traced(scene, solids, mi.load_dict(loaded(view["sensor"], parts)), job["samples"])
         seconds = time.monotonic() - began
         target = Path(view["output"])
         part = target.with_suffix(".part.npz")
