@@ -20,9 +20,6 @@ __all__ = ["bsdf", "emitter"]
 LEAST_ROUGHNESS = 0.045
 """The renderer's own limit (textures.glsl)."""
 
-LEAST_CLOTH = 0.5
-"""See-through things as rough as this are cloth, and mirror nothing."""
-
 Dict = dict[str, Any]
 
 
@@ -86,7 +83,7 @@ def _see_through(material: Material, parts: Parts) -> Dict:
         "base_color": _base_colour(material, parts),
         "tint": _rgb_value((1.0 + opacity * (hue - 1.0)) ** part),
         "opacity": _rgb_value(np.full(3, 1.0 - (1.0 - min(opacity, 1.0)) ** part)),
-        "faces": _rgb_value(np.full(3, faces if material.roughness < LEAST_CLOTH else 0.0)),
+        "faces": _rgb_value(np.full(3, 0.0 if material.is_veil else faces)),
     }
 
 

@@ -68,7 +68,7 @@ PART = structure(
     ("base", "<f4", 3),
     ("roughness metallic alpha_cutoff emission cutoff_fall least_cutoff", "<f4"),
     ("chart", "<f4", 4),
-    ("flags instance id has_chart first_vertex", "<i4"),
+    ("flags instance id has_chart first_vertex first_of_model", "<i4"),
 )
 
 INSTANCES = structure(
@@ -107,7 +107,7 @@ LIGHT = structure(
     ("baked reflecting", "<i4"),
     ("light_map_at", ADDRESS),
     ("light_map_width light_map_height", "<i4"),
-    ("instance_light_at", ADDRESS),
+    ("instance_light_at vertex_factors_at", ADDRESS),
     ("main_baked main_clear", "<f4"),
     ("edge_index_at edge_blocks_at reflections_at", ADDRESS),
     ("reflection_edge reflection_layers", "<i4"),

@@ -27,7 +27,7 @@ from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.digests import add_array, once
 from sailenv_ros.types.model import Model
 
-__all__ = ["LEAST_WEIGHT", "arriving_share", "vertex_occlusion"]
+__all__ = ["LEAST_WEIGHT", "arriving_share", "spread_points", "vertex_occlusion"]
 
 Floats: TypeAlias = NDArray[np.float32]
 Doubles: TypeAlias = NDArray[np.float64]
@@ -96,13 +96,13 @@ def arriving_share(hidden: Doubles, albedo: Doubles) -> Doubles:
 
 def _arrays(model: Model, triangles: ModelTriangles) -> dict[str, Floats]:
     meshes = [part.mesh for part in model.parts]
-    firsts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
+    firsts = np.array(model.first_vertices)
     own = [mesh.triangles + first for mesh, first in zip(meshes, firsts[:-1], strict=True)]
     vertices = np.concatenate([np.zeros((0, 3), np.int64), *own])
     there = triangles.passes < 1.0
     hidden = np.zeros(firsts[-1])
     if there.any():
-        owners, weights = _points(triangles.areas_m2[there])
+        owners, weights = spread_points(triangles.areas_m2[there])
         shares = _hidden_at(triangles, np.flatnonzero(there)[owners], weights)
         if shares.any():
             hidden = _fitted(shares, vertices[there][owners], weights, len(hidden))
@@ -110,7 +110,7 @@ def _arrays(model: Model, triangles: ModelTriangles) -> dict[str, Floats]:
     return {f"part_{number}": part for number, part in enumerate(parts)}
 
 
-def _points(areas: Doubles) -> tuple[NDArray[np.intp], Doubles]:
+def spread_points(areas: Doubles) -> tuple[NDArray[np.intp], Doubles]:
     """Spread points: (P,) the triangle of each, and (P, 3) weights of its corners."""
     wanted = np.ceil(POINTS * areas / max(float(areas.sum()), 1e-30))
     each = np.clip(wanted, 1, MOST_OF_TRIANGLE).astype(np.intp)

@@ -153,6 +153,10 @@ LIGHT_TERMS = 28
 """Terms of `ObjectLight`."""
 
 
+def _of_no_vertices() -> NDArray[np.float16]:
+    return np.zeros((0, 0, 2), np.float16)
+
+
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class ObjectLight:
     """Contribution of each layer to the light on one object that can move, where it stands.
@@ -170,11 +174,18 @@ class ObjectLight:
         which light moving things in real time, and the surroundings.
     axes : (3, 3) float32
         Of the body, in the world frame, one a row.
+    found, fitted : (L, V, 2) float16
+        Luminance of the irradiance / pi at each vertex of the model's parts, one part after
+        another, bounced and direct: as rays found it, and as the terms have it over the share that
+        the model does not hide of itself. What is drawn is right at vertices if it is multiplied
+        by their quotient. Empty where the terms are to be taken as they are.
     """
 
     bounced: NDArray[np.float32]
     direct: NDArray[np.float32]
     axes: NDArray[np.float32]
+    found: NDArray[np.float16] = field(default_factory=_of_no_vertices)
+    fitted: NDArray[np.float16] = field(default_factory=_of_no_vertices)
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)

@@ -31,10 +31,11 @@ def once(find: Callable[[T], Found]) -> Callable[[T], Found]:
 
     @wraps(find)
     def known(one: T) -> Found:
-        found = kept.get(one)
-        if found is None:
+        try:
+            return kept[one]
+        except KeyError:
             found = kept[one] = find(one)
-        return found
+            return found
 
     return known
 

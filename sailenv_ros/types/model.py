@@ -7,6 +7,7 @@ the same object is uploaded to the GPU once.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, TypeAlias
@@ -35,6 +36,7 @@ __all__ = [
     "CollisionShape",
     "ConvexShape",
     "CylinderShape",
+    "LEAST_CLOTH",
     "Material",
     "Mesh",
     "Model",
@@ -45,6 +47,9 @@ __all__ = [
 ]
 
 Texture: TypeAlias = NDArray[np.uint8]
+
+LEAST_CLOTH = 0.5
+"""Roughness from which what is see-through is cloth and mirrors nothing, as light_law.h has it."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -88,6 +93,11 @@ class Material:
     alpha: Literal["opaque", "mask", "blend"] = "opaque"
     alpha_cutoff: float = 0.5
     double_sided: bool = False
+
+    @property
+    def is_veil(self) -> bool:
+        """Whether it is see-through cloth."""
+        return self.alpha == "blend" and self.roughness >= LEAST_CLOTH
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -153,6 +163,16 @@ class Model:
     def triangle_count(self) -> int:
         """Number of triangles of all parts."""
         return sum(len(part.mesh.triangles) for part in self.parts)
+
+    @property
+    def is_veil(self) -> bool:
+        """Whether all of it is see-through cloth."""
+        return bool(self.parts) and all(part.material.is_veil for part in self.parts)
+
+    @property
+    def first_vertices(self) -> tuple[int, ...]:
+        """Number of each part's first vertex among those of all parts, and how many these are."""
+        return (0, *itertools.accumulate(len(part.mesh.positions) for part in self.parts))
 
     def only(self, meshes: tuple[int, ...]) -> Model:
         """Return a model of some of the parts; the same object for the same ones.

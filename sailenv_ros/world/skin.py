@@ -74,7 +74,7 @@ def skin_over(model: Model, rig: Rig, matrices: Doubles) -> Deformation:
 
     def made() -> Iterable[tuple[NDArray[np.float32], NDArray[np.float32]]]:
         given = (model.positions, model.normals, *rig.skin, matrices)
-        ends = np.cumsum([len(part.mesh.positions) for part in model.parts])[:-1]
+        ends = model.first_vertices[1:-1]
         moved, turned = (np.split(one, ends) for one in skin(*given, threads=thread_count()))
         return zip(moved, turned, strict=True)
 

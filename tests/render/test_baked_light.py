@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from sailenv_ros.rays.self_occlusion import arriving_share
 from sailenv_ros.render.contract import RenderBackend, RenderRequest
@@ -13,6 +15,7 @@ from sailenv_ros.render.cpu.renderer import NativeRenderer
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight, SunEdges
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
+from sailenv_ros.types.model import Model
 from sailenv_ros.types.views import LIT_VIEWS, RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.baked import SIZE, baked, chart, layer
@@ -160,6 +163,79 @@ def test_where_an_object_hides_itself_less_light_arrives(render: Render) -> None
     # An endless number of bounces between parts that see half of each other: 0.5 / (1 - 0.5 a).
     np.testing.assert_allclose(share, 0.5 / (1.0 - 0.5 * ALBEDO), rtol=0.08)
     np.testing.assert_allclose(seen, 0.8 * share * ALBEDO, rtol=0.05, atol=0.004)
+
+
+def with_factors(base: ObjectLight, factors: NDArray[np.float64]) -> ObjectLight:
+    """The same light, of which rays found so many times as much at vertices as terms say."""
+    fitted = np.full((1, len(factors), 2), 0.25)
+    found = fitted * factors[:, None]
+    return replace(base, found=found.astype(np.float16), fitted=fitted.astype(np.float16))
+
+
+def even_light(radiance: float) -> ObjectLight:
+    """Irradiance / pi that is the same everywhere."""
+    terms = np.zeros((1, LIGHT_TERMS, 3), np.float32)
+    terms[0, 0] = radiance
+    even = np.zeros((1, LIGHT_TERMS), np.float32)
+    return ObjectLight(bounced=terms, direct=even, axes=np.eye(3, dtype=np.float32))
+
+
+@pytest.mark.parametrize("alpha", ["opaque", "blend"])
+def test_between_vertices_light_is_as_far_from_the_terms_as_at_them(
+    render: Render, alpha: Literal["opaque", "blend"]
+) -> None:
+    """Of the second part of a model, behind another instance that has factors as well."""
+    colour = (0.5, 0.4, 0.3, 0.5 if alpha == "blend" else 1.0)
+    wall = model_of(wall_mesh(8.0, 8.0), base_colour=colour, roughness=1.0, alpha=alpha)
+    model = Model(name="two", parts=model_of(box_mesh(0.01)).parts + wall.parts)
+    factors = np.concatenate([np.full(24, 3.0), [0.5, 1.5, 1.5, 0.5]])
+    things = [Thing(model_of(box_mesh(0.01)), Pose((3.0, 3.0, 0.0))), Thing(model, AHEAD)]
+    scene = snapshot_of(things, lights=(), environment=DARK, baked=baked({}, [], layer(None)))
+    light = {
+        1: with_factors(even_light(0.4), np.full(24, 2.0)),
+        2: with_factors(even_light(0.4), factors),
+    }
+    camera = camera_at()
+    got = linear(render(replace(scene, object_light=light), camera, "rgb")["rgb"])[:20].mean(axis=0)
+    y = -(np.arange(len(got)) - camera.intrinsics.cx) / camera.intrinsics.fx * 3.0
+    wanted = 0.4 * (1.0 - y / 8.0)[:, None] * ALBEDO * colour[3]
+    np.testing.assert_allclose(got, wanted, rtol=0.05, atol=0.003)
+
+
+def test_light_at_vertices_is_that_of_the_front(render: Render) -> None:
+    """A sheet is seen from behind; of that side nothing was found."""
+    sheet = model_of(
+        wall_mesh(8.0, 8.0), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0, double_sided=True
+    )
+    pose = Pose.from_rpy_deg((3.0, 0.0, 0.0), (0.0, 0.0, 180.0))
+    scene = snapshot_of(
+        [Thing(sheet, pose)], lights=(), environment=DARK, baked=baked({}, [], layer(None))
+    )
+    light = {1: with_factors(even_light(0.4), np.full(4, 2.0))}
+    got = linear(render(replace(scene, object_light=light), camera_at(), "rgb")["rgb"])
+    np.testing.assert_allclose(got.mean(axis=(0, 1)), 0.4 * ALBEDO, rtol=0.04, atol=0.003)
+
+
+def test_ambient_light_is_the_same_at_vertices(render: Render) -> None:
+    """It was raised since the bake, and nothing else shines."""
+    light = replace(baked({}, [], layer(None)), environment=DARK)
+    red, green, blue = DARK.ambient
+    raised = replace(DARK, ambient=(red + 0.2, green + 0.2, blue + 0.2))
+    scene = snapshot_of([Thing(WALL, AHEAD)], lights=(), environment=raised, baked=light)
+    dark = np.zeros((1, 4, 2), np.float16)
+    own = {1: replace(even_light(0.0), found=dark, fitted=dark)}
+    got = linear(render(replace(scene, object_light=own), camera_at(), "rgb")["rgb"])
+    np.testing.assert_allclose(got.mean(axis=(0, 1)), 0.2 * ALBEDO, rtol=0.04, atol=0.003)
+
+
+def test_light_of_a_model_that_is_gone_is_not_taken_for_the_next_ones(render: Render) -> None:
+    """It has another number of vertices: what was found at them says nothing."""
+    scene = snapshot_of(
+        [Thing(WALL, AHEAD)], lights=(), environment=DARK, baked=baked({}, [], layer(None))
+    )
+    light = {1: with_factors(even_light(0.4), np.full(24, 2.0))}
+    got = linear(render(replace(scene, object_light=light), camera_at(), "rgb")["rgb"])
+    np.testing.assert_allclose(got.mean(axis=(0, 1)), 0.4 * ALBEDO, rtol=0.04, atol=0.003)
 
 
 def test_what_was_moved_leaves_its_light_behind(render: Render) -> None:

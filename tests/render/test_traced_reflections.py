@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sailenv_ros.native.library import load_library, using_instruction_set
 from sailenv_ros.render.contract import RenderRequest
 from sailenv_ros.render.cpu.renderer import NativeRenderer
+from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
 from sailenv_ros.types.camera import Camera
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
@@ -100,6 +101,29 @@ def test_what_moves_moves_in_the_metal_in_the_same_frame(native: NativeRenderer)
         rgb = picture(native, METAL, Thing(LAMP, Pose(here)))
         assert around(rgb, place_of((-0.6, *here[1:]))).max() > 0.2
         assert around(rgb, place_of((-0.6, *there[1:]))).max() < 0.02
+
+
+def test_metal_mirrors_the_light_at_vertices(native: NativeRenderer) -> None:
+    """A card before it whose light is three times what its terms say."""
+    card = Thing(
+        model_of(box_mesh((0.02, 1.2, 1.2)), base_colour=(0.5, 0.5, 0.5, 1.0), roughness=1.0),
+        Pose((-1.0, 0.8, 0.3)),
+    )
+    terms = np.zeros((1, LIGHT_TERMS, 3), np.float32)
+    terms[0, 0] = 0.2
+    fitted = np.full((1, 24, 2), 0.25, np.float16)
+    own = ObjectLight(
+        bounced=terms,
+        direct=np.zeros((1, LIGHT_TERMS), np.float32),
+        axes=np.eye(3, dtype=np.float32),
+        found=3 * fitted,
+        fitted=fitted,
+    )
+    light = baked({1: chart(BACK_WALL.model, BACK_WALL.pose)}, [], layer(None))
+    scene = snapshot_of([BACK_WALL, METAL, card], lights=(), environment=BLACK, baked=light)
+    request = RenderRequest(replace(scene, object_light={3: own}), camera(), ("rgb",))
+    seen = around(native.render(request).views["rgb"], place_of((-0.99, 0.8, 0.3)))
+    np.testing.assert_allclose(seen, 3 * 0.2 * 0.5 * np.array(TINT), rtol=0.08)
 
 
 def test_what_is_hidden_from_the_metal_is_not_mirrored(native: NativeRenderer) -> None:

@@ -18,6 +18,9 @@ __all__ = ["kept_light", "stacked", "unstacked"]
 
 _ARRAYS = tuple(field.name for field in fields(ObjectLight))
 
+_OF_VERTICES = ("found", "fitted")
+"""Arrays whose second side is an object's own: they are joined along it."""
+
 
 def kept_light(
     kind: str,
@@ -48,12 +51,26 @@ def kept_light(
 
 def stacked(light: Sequence[ObjectLight]) -> Arrays:
     """Return the light on objects of one scene, of one or more, as arrays."""
-    return {name: np.stack([getattr(one, name) for one in light]) for name in _ARRAYS}
+    arrays = {
+        name: np.stack([getattr(one, name) for one in light])
+        for name in _ARRAYS
+        if name not in _OF_VERTICES
+    }
+    layers = len(light[0].direct)
+    for name in _OF_VERTICES:
+        each = [getattr(one, name).reshape(layers, -1, 2) for one in light]
+        arrays[name] = np.concatenate(each, axis=1)
+        arrays["vertices"] = np.array([one.shape[1] for one in each])
+    return arrays
 
 
 def unstacked(arrays: Arrays) -> list[ObjectLight]:
     """Return the light on objects of `stacked`."""
-    columns = (arrays[name] for name in _ARRAYS)
+    ends = np.cumsum(arrays["vertices"])[:-1]
+    columns = (
+        np.split(arrays[name], ends, axis=1) if name in _OF_VERTICES else arrays[name]
+        for name in _ARRAYS
+    )
     each = zip(*columns, strict=True)
     return [ObjectLight(**dict(zip(_ARRAYS, one, strict=True))) for one in each]
 

@@ -58,6 +58,8 @@ class MovableObjects:
         The same objects as before where they stand and rest as before.
     places : list of Place
         Of each.
+    radii : (N,) float64
+        Of a ball around each [m].
     near : list of list of int
         Which others stand near each.
     around : list of tuple of Place
@@ -72,7 +74,7 @@ class MovableObjects:
         self._instances: tuple[DrawnInstance, ...] | None = None
         self._rows = np.zeros(0, np.intp)
         self._poses, self._moving = np.zeros((0, 4, 4)), np.zeros(0, np.bool_)
-        self._centres, self._radii = np.zeros((0, 3)), np.zeros(0)
+        self._centres, self.radii = np.zeros((0, 3)), np.zeros(0)
         self._close = np.zeros((0, 0), np.bool_)
 
     def follow(self, snapshot: WorldSnapshot) -> None:
@@ -85,7 +87,7 @@ class MovableObjects:
             count = len(self._rows)
             # No pose is that of before.
             self._poses, self._moving = np.full((count, 4, 4), np.nan), np.zeros(count, np.bool_)
-            self._centres, self._radii = np.zeros((count, 3)), np.zeros(count)
+            self._centres, self.radii = np.zeros((count, 3)), np.zeros(count)
             self._close = np.zeros((count, count), np.bool_)
             self.things, self.places = [], []
             self.near, self.around = [[] for _ in range(count)], [() for _ in range(count)]
@@ -106,7 +108,7 @@ class MovableObjects:
             # Appended where the lists are new.
             self.things[number : number + 1] = [thing]
             self.places[number : number + 1] = [thing.place]
-            self._centres[number], self._radii[number] = thing.ball
+            self._centres[number], self.radii[number] = thing.ball
         if changed:
             self._take_in_neighbours(changed)
 
@@ -114,7 +116,7 @@ class MovableObjects:
         """Find which others stand near those that have changed, and the reverse."""
         moved = np.array(changed, np.intp)
         apart = np.linalg.norm(self._centres[moved, None] - self._centres, axis=2)
-        close: NDArray[np.bool_] = apart < self._radii[moved, None] + self._radii + NEAR_M
+        close: NDArray[np.bool_] = apart < self.radii[moved, None] + self.radii + NEAR_M
         close[np.arange(len(moved)), moved] = False
         touched = np.zeros(len(self.near), np.bool_)
         touched[moved] = True

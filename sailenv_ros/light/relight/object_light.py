@@ -10,7 +10,7 @@ From `BakedScene` and objects to `ObjectLight`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.settings import INSIDE_SHARE
 from sailenv_ros.light.relight.baked_scene import BakedScene
+from sailenv_ros.light.relight.light_terms import fitted_terms, terms_at
 from sailenv_ros.light.relight.quality import QUICK, Quality
 from sailenv_ros.light.relight.ray_world import RayWorld, ray_world
 from sailenv_ros.light.relight.scene_changes import (
@@ -27,6 +28,7 @@ from sailenv_ros.light.relight.scene_changes import (
     ray_instances,
 )
 from sailenv_ros.light.relight.sent_light import sent_by_light, sent_by_probes
+from sailenv_ros.light.relight.vertex_points import VertexPoints, vertex_points
 from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import direct_light_delta, gather_change
 from sailenv_ros.rays.model_triangles import triangles_of
@@ -34,6 +36,7 @@ from sailenv_ros.rays.ray_patterns import low_discrepancy_points, sequence_point
 from sailenv_ros.rays.self_occlusion import LEAST_WEIGHT, vertex_occlusion
 from sailenv_ros.rays.static_geometry import PlacedModel
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
+from sailenv_ros.types.colour import LUMINANCE
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.model import Model
@@ -49,13 +52,13 @@ Place: TypeAlias = tuple[int, Model, tuple[float, float, float], bytes]
 WHOLE, INSIDE = 2, 3
 """States of points: all of their light is wanted; they lie inside of something."""
 
-STIFFNESS = np.array([0.0] + 3 * [1.3] + 24 * [0.26])
-"""How strongly each term is held back where points do not tell it: as by so many points."""
-
 HIDDEN_M = 0.1
 """Points that see nothing farther than a few centimetres are seldom seen, and count less: by the
 harmonic mean of the distances of what they see over this [m]."""
 
+
+HALF_MOST = 6e4
+"""Brighter light is kept as so bright."""
 
 LEAST_OPEN = 0.1
 """Open share below which points tell too little of what arrives there to divide by it."""
@@ -177,13 +180,47 @@ class ObjectLighting:
             bounced, direct = bounced / share[:, None], direct / share[:, None]
             weights = weights * share
         axes = thing.world_from_body[:3, :3].T
-        fit = _fit(positions, normals, _counted(weights, normals, axes), axes)
+        fit = fitted_terms(
+            positions.astype(np.float64),
+            normals.astype(np.float64),
+            _counted(weights, normals, axes),
+            axes,
+        )
         by_layer = (fit @ bounced).reshape(LIGHT_TERMS, self._layers, 3).transpose(1, 0, 2)
-        return ObjectLight(
+        light = ObjectLight(
             bounced=np.ascontiguousarray(by_layer, np.float32),
             direct=np.ascontiguousarray((fit @ direct).T, np.float32),
             axes=np.ascontiguousarray(axes, np.float32),
         )
+        asked = vertex_points(thing.model) if quality.at_vertices else None
+        return light if asked is None else self._at_vertices(light, thing, asked, world, quality)
+
+    def _at_vertices(
+        self,
+        light: ObjectLight,
+        thing: PlacedObject,
+        asked: VertexPoints,
+        world: RayWorld,
+        quality: Quality,
+    ) -> ObjectLight:
+        """Return the light on an object with what rays find at its vertices."""
+        count = len(asked.positions)
+        few = replace(quality, object_rays=asked.ray_count, area_rays=8, light_rays=4)
+        positions, normals = _placed_points(thing, asked.positions, asked.normals)
+        bounced, direct, _ = self._gathered(world, None, positions, normals, few)
+        if asked.is_veil:
+            bounced = bounced * asked.open_shares[:, None]
+            direct = direct * asked.open_shares[:, None]
+        terms = terms_at(
+            positions.astype(np.float64), normals.astype(np.float64), light.axes.astype(np.float64)
+        )
+        fitted = np.empty((self._layers, count, 2))
+        fitted[..., 0] = (light.bounced @ LUMINANCE) @ terms.T
+        fitted[..., 1] = light.direct @ terms.T
+        fitted *= asked.open_shares[:, None]
+        of_colours = (bounced.reshape(count, self._layers, 3) @ LUMINANCE).T
+        found, fitted = asked.at_vertices(np.stack([of_colours, direct.T], axis=-1), fitted)
+        return replace(light, found=_halves(found), fitted=_halves(fitted))
 
     def placed(self, thing: PlacedObject) -> PlacedInstance:
         """Return an object as rays meet it; the same one until it has moved."""
@@ -239,6 +276,10 @@ def near_changes(
     return frozenset(
         thing.id for thing in things if any(_is_near(thing, part, within_m) for part in furniture)
     )
+
+
+def _halves(values: Doubles) -> NDArray[np.float16]:
+    return np.clip(values, -HALF_MOST, HALF_MOST).astype(np.float16)
 
 
 def _is_near(thing: PlacedObject, part: PlacedInstance, within_m: float) -> bool:
@@ -304,21 +345,3 @@ def _counted(weights: Doubles, normals: Floats, axes: Doubles) -> Doubles:
     most[most < LEAST_WEIGHT] = 1.0
     counted: Doubles = weights / most[side]
     return counted
-
-
-def _fit(positions: Floats, normals: Floats, weights: Doubles, axes: Doubles) -> Doubles:
-    """Return (LIGHT_TERMS, P): from values at points to terms, by weighted least squares."""
-    n, p = normals.astype(np.float64), positions.astype(np.float64)
-    middle = (weights[:, None] * p).sum(axis=0) / weights.sum()
-    reach = max(float(np.linalg.norm(p - middle, axis=1).max()), 1e-6)
-    along = n @ axes.T
-    sides = np.concatenate([np.maximum(along, 0.0), np.minimum(along, 0.0)], axis=1) ** 2
-    places = np.concatenate([np.ones((len(n), 1)), (p - middle) / reach], axis=1)
-    of_sides = (sides[:, :, None] * places[:, None, :]).reshape(len(n), -1)
-    basis = np.concatenate([np.ones((len(n), 1)), n, of_sides], axis=1)
-    normal = (basis * weights[:, None]).T @ basis + np.diag(STIFFNESS * weights.mean())
-    fit = np.linalg.solve(normal, (basis * weights[:, None]).T)
-    by_side = fit[4:].reshape(6, 4, -1)
-    by_side[:, 1:] /= reach
-    by_side[:, 0] -= np.einsum("x,sxp->sp", middle, by_side[:, 1:])
-    return fit

@@ -23,9 +23,10 @@ from sailenv_ros.light.relight.object_light import (
     SurfacePoints,
     near_changes,
 )
-from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
+from sailenv_ros.light.relight.quality import AT_VERTICES, FINE, QUICK, Quality
 from sailenv_ros.light.relight.scene_changes import Change
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
+from sailenv_ros.light.relight.vertex_points import vertex_points
 from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.snapshot import WorldSnapshot
 
@@ -33,6 +34,17 @@ __all__ = ["ObjectLights", "with_object_light"]
 
 FAR_M = 1.0
 """Furniture that is farther from an object's ball counts when its own light is refined [m]."""
+
+LEAST_LARGE_M = 0.25
+"""Radius of an object's ball from which light at its vertices is found: of smaller ones little is
+seen of it [m]."""
+
+LEAST_SHARE = 0.25
+"""Radius that another object near it has at least, over its own, to count there."""
+
+WHOLE, WITH, WITHOUT, FOUND = range(4)
+"""Parts of the light on an object: all of it; with and without what moves, by few rays; that at
+its vertices."""
 
 MOST_MOVING = 12
 """Of the objects that move so many get light of their own in each snapshot, those with the lowest
@@ -69,6 +81,7 @@ class ObjectLights:
         self._still: dict[int, KnownLight] = {}
         self._known: dict[tuple[int, int], KnownLight] = {}
         self._light: Mapping[int, ObjectLight] = {}
+        self._sums: dict[int, tuple[tuple[KnownLight | None, ...], ObjectLight]] = {}
 
     @property
     def things(self) -> list[PlacedObject]:
@@ -111,15 +124,16 @@ class ObjectLights:
                 self._lightings, self._still = {}, scene.found.objects
             self._lightings = {key: one for key, one in self._lightings.items() if not key}
             self._of, self._known = of, {}
-        affected = near_changes(scene, things, changes, FAR_M) if rough else frozenset()
+        affected = near_changes(scene, things, changes, FAR_M)
         every = tuple(change.key for change in changes)
         known: dict[tuple[int, int], KnownLight] = {}
         asked: list[_Asked] = []
         for place in _chosen(things):
             thing = things[place]
-            counted = () if rough and thing.id not in affected else changes
-            moved = every if counted else ()
-            for number, part in enumerate(self._parts(place)):
+            for number, part in self._parts(place).items():
+                far = (rough or number == FOUND) and thing.id not in affected
+                counted = () if far else changes
+                moved = every if counted else ()
                 same = self._as_before(thing.id, number, moved, part)
                 if same is not None:
                     known[thing.id, number] = same
@@ -134,17 +148,32 @@ class ObjectLights:
             self._known = known
             # What no change counts for is so again when furniture is back.
             self._still |= {
-                id_: one for (id_, number), one in known.items() if not (number or one[0][0])
+                id_: one
+                for (id_, number), one in known.items()
+                if number == WHOLE and not one[0][0]
             }
-            self._light = {id_: _sum_of(known, id_) for id_, number in known if number == 0}
+            self._sums = {id_: self._summed(known, id_) for id_, number in known if number == WHOLE}
+            self._light = {id_: light for id_, (_, light) in self._sums.items()}
         return self._light
+
+    def _summed(
+        self, known: Mapping[tuple[int, int], KnownLight], id_: int
+    ) -> tuple[tuple[KnownLight | None, ...], ObjectLight]:
+        """Return the parts of the light on an object and their sum, the same one of the same."""
+        parts = tuple(known.get((id_, number)) for number in (WHOLE, WITH, WITHOUT, FOUND))
+        before = self._sums.get(id_)
+        if before is not None and all(
+            one is two for one, two in zip(parts, before[0], strict=True)
+        ):
+            return before
+        return parts, _sum_of(known, id_)
 
     def _as_before(
         self, id_: int, number: int, moved: tuple[object, ...], part: _Part
     ) -> KnownLight | None:
         """Return what is known already of a part of the light on an object."""
         before = [self._known.get((id_, number))]
-        if number == 0:
+        if number == WHOLE:
             before.append(self._still.get(id_))
         return next((one for one in before if one and _is_of(one, moved, part)), None)
 
@@ -153,7 +182,7 @@ class ObjectLights:
     ) -> dict[tuple[int, int], KnownLight]:
         """Find parts of light; of a scene that begins, that on what rests is kept on disk."""
         kept: dict[tuple[int, int], ObjectLight] = {}
-        rest = [one for one in asked if begins is not None and one.part.quality is FINE]
+        rest = [one for one in asked if begins is not None and one.part.quality is not QUICK]
         if begins is not None and rest:
             places = [one.part.around for one in rest]
             arrays = kept_light(
@@ -181,7 +210,7 @@ class ObjectLights:
             mapped = opened.enter_context(ThreadPoolExecutor(threads)).map if apart else map
             return list(mapped(trace, asked))
 
-    def _parts(self, place: int) -> tuple[_Part, ...]:
+    def _parts(self, place: int) -> dict[int, _Part]:
         """Return what the light on an object is put together from.
 
         What moves near an object that rests changes little of its light, and from frame to frame:
@@ -190,16 +219,27 @@ class ObjectLights:
         movable = self._movable
         near, around = movable.near[place], movable.around[place]
         if movable.things[place].moves:
-            return (_Part(QUICK, near, around),)
+            return {WHOLE: _Part(QUICK, near, around)}
         resting = [other for other in near if not movable.things[other].moves]
+        parts: dict[int, _Part] = {}
         if len(resting) == len(near):
-            return (_Part(FINE, near, around),)
-        without = movable.places[place], *(movable.places[other] for other in resting)
-        return (
-            _Part(FINE, resting, without),
-            _Part(QUICK, near, around),
-            _Part(QUICK, resting, without),
-        )
+            parts[WHOLE] = _Part(FINE, near, around)
+        else:
+            without = self._around(place, resting)
+            parts[WHOLE] = _Part(FINE, resting, without)
+            parts[WITH], parts[WITHOUT] = (
+                _Part(QUICK, near, around),
+                _Part(QUICK, resting, without),
+            )
+        radius, model = movable.radii[place], movable.things[place].model
+        if radius >= LEAST_LARGE_M and vertex_points(model) is not None:
+            large = [other for other in resting if movable.radii[other] >= LEAST_SHARE * radius]
+            parts[FOUND] = _Part(AT_VERTICES, large, self._around(place, large))
+        return parts
+
+    def _around(self, place: int, others: list[int]) -> tuple[Place, ...]:
+        """Return the place of an object, and those of others."""
+        return self._movable.places[place], *(self._movable.places[other] for other in others)
 
 
 class _Part(NamedTuple):
@@ -240,10 +280,13 @@ class _Asked(NamedTuple):
 
 def _sum_of(known: Mapping[tuple[int, int], KnownLight], id_: int) -> ObjectLight:
     """Return the light on an object from its parts: the first, or it, the second less the third."""
-    light = known[id_, 0][1]
-    if (id_, 1) not in known:
+    light = known[id_, WHOLE][1]
+    if (id_, FOUND) in known:
+        at_vertices = known[id_, FOUND][1]
+        light = replace(light, found=at_vertices.found, fitted=at_vertices.fitted)
+    if (id_, WITH) not in known:
         return light
-    with_all, without = known[id_, 1][1], known[id_, 2][1]
+    with_all, without = known[id_, WITH][1], known[id_, WITHOUT][1]
     return replace(
         light,
         bounced=light.bounced + (with_all.bounced - without.bounced),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["FINE", "QUICK", "Quality"]
+__all__ = ["AT_VERTICES", "FINE", "QUICK", "Quality"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,6 +23,8 @@ class Quality:
         From each probe.
     object_points, object_rays : int
         Points of each object that can move, and rays from each of them.
+    at_vertices : bool
+        Whether the light on objects of `vertex_points` is found at their vertices, too.
     texel_rays, edge_rays : int
         From each texel near such an object, and where a shadow of it ends.
     smoothing : int
@@ -48,6 +50,7 @@ class Quality:
     probe_rays: int = 128
     object_points: int = 128
     object_rays: int = 64
+    at_vertices: bool = False
     texel_rays: int = 256
     edge_rays: int = 32
     smoothing: int = 2
@@ -78,3 +81,6 @@ QUICK = Quality(
 
 FINE = Quality()
 """Quality of the frames after a motion."""
+
+AT_VERTICES = Quality(at_vertices=True)
+"""Quality of the light at vertices in these."""

@@ -188,6 +188,7 @@ class FrameLight:
             self._shadow.draw(main, snapshot, table, casting=~still, framed=still)
         self._set_shadows(light, self._shadow, self._static_shadow)
         light["instance_light_at"] = address(self._baked.instances)
+        light["vertex_factors_at"] = address(self._baked.vertex_factors)
         light["traced_at"] = address(self._traced.update(snapshot, table, still))
         if same:
             self._set_reflection_table(light, snapshot)

@@ -300,8 +300,9 @@ class PartTable:
                 yield _MovingMesh(owner, drawn, mesh, rest, places)
 
     def _make(self, model: Model, meshes: list[DrawnMesh]) -> _ModelParts:
-        parts, count = np.zeros(len(model.parts), PART), 0
-        for row, part, drawn in zip(parts, model.parts, meshes, strict=True):
+        parts = np.zeros(len(model.parts), PART)
+        places = zip(parts, model.parts, meshes, model.first_vertices[:-1], strict=True)
+        for row, part, drawn, first in places:
             mesh = self._meshes.get(drawn)
             for axis, name in enumerate(("corner_x_at", "corner_y_at", "corner_z_at")):
                 row[name] = address(mesh.corners[axis])
@@ -312,8 +313,8 @@ class PartTable:
             row["corner_count"] = mesh.corner_count
             row["cluster_count"] = len(mesh.clusters)
             row["sphere"] = mesh.sphere
-            row["first_vertex"] = count if drawn.owner else RIGID
-            count += len(part.mesh.positions)
+            row["first_vertex"] = first if drawn.owner else RIGID
+            row["first_of_model"] = first
             row["colour_map_at"] = self._textures.colour_map(part.material)
             row["detail_map_at"] = self._textures.detail_map(part.material)
             _describe(row, part.material)

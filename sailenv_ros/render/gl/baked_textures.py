@@ -16,9 +16,12 @@ __all__ = ["BakedTextures"]
 
 LIGHT_MAP_UNIT, INSTANCE_UNIT = 4, 5
 EDGE_INDEX_UNIT, EDGE_BLOCKS_UNIT = 13, 14
+FACTORS_UNIT = 16
 
 BLOCKS_IN_A_ROW = 128
 """Blocks in a row of the texture, as in `lighting.frag`."""
+
+FACTORS_IN_A_ROW = 1024
 
 
 class BakedTextures:
@@ -29,6 +32,7 @@ class BakedTextures:
         self._state = BakedState()
         self._light_map: moderngl.Texture | None = None
         self._instances: moderngl.Texture | None = None
+        self._factors: moderngl.Texture | None = None
         self._edge_index: moderngl.Texture | None = None
         self._edge_blocks: moderngl.Texture | None = None
         self._edges: SunEdges | None = None
@@ -47,6 +51,7 @@ class BakedTextures:
         table = self._state.instances
         if table is not self._table:
             self._write(table)
+            self._write_factors(self._state.vertex_factors)
         return composited
 
     def show_alone(self, snapshot: WorldSnapshot, composited: CompositedLight) -> None:
@@ -56,6 +61,7 @@ class BakedTextures:
         self._upload_edges(composited.main_edges)
         self._uploaded = composited
         self._write(self._state.around(snapshot, composited.probes))
+        self._write_factors(np.zeros(0, np.float32))
 
     def bind(self, program: moderngl.Program) -> None:
         """Make the textures readable for a program."""
@@ -65,6 +71,9 @@ class BakedTextures:
         set_uniform(program, "light_map", LIGHT_MAP_UNIT)
         self._instances.use(INSTANCE_UNIT)
         set_uniform(program, "instance_light", INSTANCE_UNIT)
+        assert self._factors is not None
+        self._factors.use(FACTORS_UNIT)
+        set_uniform(program, "vertex_factors", FACTORS_UNIT)
         assert self._edge_index is not None
         assert self._edge_blocks is not None
         self._edge_index.use(EDGE_INDEX_UNIT)
@@ -74,7 +83,10 @@ class BakedTextures:
 
     def close(self) -> None:
         """Free the textures."""
-        for texture in (self._light_map, self._instances, self._edge_index, self._edge_blocks):
+        for texture in (
+            *(self._light_map, self._instances, self._factors),
+            *(self._edge_index, self._edge_blocks),
+        ):
             if texture is not None:
                 texture.release()
 
@@ -90,6 +102,18 @@ class BakedTextures:
             self._instances.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self._instances.write(np.ascontiguousarray(table))
         self._table = table
+
+    def _write_factors(self, factors: NDArray[np.float32]) -> None:
+        rows = max(-(-len(factors) // FACTORS_IN_A_ROW), 1)
+        padded = np.zeros((rows, FACTORS_IN_A_ROW), np.float32)
+        padded.reshape(-1)[: len(factors)] = factors
+        if self._factors is not None and self._factors.height != rows:
+            self._factors.release()
+            self._factors = None
+        if self._factors is None:
+            self._factors = self._context.texture((FACTORS_IN_A_ROW, rows), 1, dtype="f4")
+            self._factors.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        self._factors.write(padded)
 
     def _upload_edges(self, edges: SunEdges | None) -> None:
         """Lay the blocks out side by side; without any, one texel says so."""

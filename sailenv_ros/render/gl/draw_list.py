@@ -127,6 +127,10 @@ class DrawList:
         self._unlit = self.uniforms[:, _GLOW:_NORMAL].copy()
         self.show_lamps()
         slices = [geometry.slice(mesh) for *_, mesh in parts]
+        self.uniforms[:, _NORMAL, 3] = [
+            contents.instances[row].model.first_vertices[mesh.part] - lies.first_vertex
+            for (_, row, _, mesh), lies in zip(parts, slices, strict=True)
+        ]
         self.lies = [(mesh.first_index, mesh.index_count) for mesh in slices]
         self._ranges = np.array(
             [(lies.first_cluster, lies.cluster_count, lies.index_count) for lies in slices],

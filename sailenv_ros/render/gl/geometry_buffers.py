@@ -35,6 +35,7 @@ class MeshSlice:
     index_count: int
     first_cluster: int
     cluster_count: int
+    first_vertex: int
 
 
 @dataclass(eq=False, slots=True)
@@ -101,7 +102,7 @@ class GeometryBuffers:
             triangles, groups = clusters_of(made["position"], mesh.triangles)
             places, numbers = corners_of(made["position"], triangles)
             self._slices[mesh.key] = MeshSlice(
-                first_index, triangles.size, first_cluster, len(groups)
+                first_index, triangles.size, first_cluster, len(groups), first_vertex
             )
             if mesh.owner:
                 self._moving[mesh.key] = _MovingMesh(

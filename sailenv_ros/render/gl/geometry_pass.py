@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
+from sailenv_ros.render.gl.baked_textures import BakedTextures
 from sailenv_ros.render.gl.draw_list import ROWS, Batch, DrawList
 from sailenv_ros.render.gl.geometry_buffers import GeometryBuffers
 from sailenv_ros.render.gl.materials import BatchKind, MaterialBuffers
@@ -120,7 +121,7 @@ class GeometryPass:
         surface = self._context.texture(size, 2, dtype="f4")
         shape = self._context.texture(size, 4, dtype="f2") if shaded else None
         albedo = self._context.texture(size, 4) if shaded else None
-        light_at = self._context.texture(size, 2, dtype="nu2") if shaded and baked else None
+        light_at = self._context.texture(size, 2, dtype="f4") if shaded and baked else None
         written = {view: self._context.texture(size, 4, dtype="f4") for view in outputs}
         textures = (surface, shape, albedo, light_at)
         for texture in (*textures, *written.values()):
@@ -144,12 +145,15 @@ class GeometryPass:
         materials: MaterialBuffers,
         intrinsics: CameraIntrinsics,
         *,
+        baked: BakedTextures,
         half_pixels: bool = False,
     ) -> None:
         """Draw everything; `draws` must have been placed for the camera.
 
         Parameters
         ----------
+        baked : BakedTextures
+            Read where the targets take places in a light map.
         half_pixels : bool
             True if the lens is that of samples half a pixel apart, see `half_pixels`: textures
             are those of the pixels.
@@ -172,6 +176,8 @@ class GeometryPass:
                 program = self._program(batch.kind, targets, half_pixels)
                 set_lens(program, intrinsics)
                 materials.bind(program, batch.kind.maps)
+                if targets.light_at is not None:
+                    baked.bind(program)
                 by_corner = _by_corner(batch.kind, targets)
                 indices = self._index_buffer
                 for culled, offset in _SIDES if batch.kind.double_sided else _SIDES[1:]:

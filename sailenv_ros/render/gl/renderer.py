@@ -222,7 +222,9 @@ class Renderer(DrawingRenderer):
         draws = self._draws_of(snapshot)
         draws.place(snapshot, _clip_from_optical(intrinsics), camera.camera_from_world)
         self._geometry_pass.draw(
-            targets, draws, self._geometry, self._materials, intrinsics, half_pixels=half_pixels
+            *(targets, draws, self._geometry, self._materials, intrinsics),
+            baked=self._scene_light.baked,
+            half_pixels=half_pixels,
         )
         return targets
 
@@ -292,11 +294,8 @@ class Renderer(DrawingRenderer):
         )
         try:
             self._geometry_pass.draw(
-                targets,
-                draws,
-                self._geometry,
-                self._materials,
-                intrinsics,
+                *(targets, draws, self._geometry, self._materials, intrinsics),
+                baked=self._scene_light.baked,
                 half_pixels=half_pixels,
             )
             self._lighting_pass.draw(targets, seen, illumination)

@@ -45,14 +45,19 @@ Radiance = Callable[[Camera, Illumination, NDArray[np.bool_]], Seen]
 
 
 class SceneLight:
-    """The light of the scene that is shown, in one context."""
+    """The light of the scene that is shown, in one context.
+
+    Attributes
+    ----------
+    baked : BakedTextures
+    """
 
     def __init__(self, context: moderngl.Context, programs: ProgramCache) -> None:
         self._context = context
         self._shadow = ShadowPass(context, programs)
         self._static_shadow: ShadowPass | None = None
         self._programs = programs
-        self._baked = BakedTextures(context)
+        self.baked = BakedTextures(context)
         self._room = RoomReflections(partial(blur_directions, threads=thread_count()), sum_texels)
         self._reflections = ReflectionTexture(context)
         self._reflected: CompositedLight | None = None
@@ -67,7 +72,7 @@ class SceneLight:
         """Bring everything up to date for a snapshot; `draws` must be placed again afterwards."""
         contents = snapshot.contents
         main = main_light(contents.lights)
-        composited = self._baked.show(snapshot)
+        composited = self.baked.show(snapshot)
         if composited is None or contents.baked is None:
             if main is not None:
                 self._shadow.draw(main, snapshot, draws, geometry)
@@ -95,7 +100,7 @@ class SceneLight:
             environment=contents.environment,
             shadow=self._shadow,
             static_shadow=static_shadow,
-            baked=self._baked,
+            baked=self.baked,
             main_baked=composited.main_baked,
             main_transmittance=composited.main_transmittance,
             reflections=self._reflections,
@@ -103,7 +108,7 @@ class SceneLight:
 
     def close(self) -> None:
         """Free everything on the GPU."""
-        for resource in (self._shadow, self._static_shadow, self._baked, self._reflections):
+        for resource in (self._shadow, self._static_shadow, self.baked, self._reflections):
             if resource is not None:
                 resource.close()
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.rays.self_occlusion import vertex_occlusion
-from sailenv_ros.types.baked_light import Unwrapping
+from sailenv_ros.types.baked_light import LightChart, Unwrapping
 from sailenv_ros.types.model import Mesh, Model
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents
 
@@ -133,12 +133,18 @@ def owner_of(drawn: DrawnInstance) -> int:
 
 def unwrappings(contents: SceneContents) -> list[Unwrapping | None]:
     """Return how each instance is unwrapped into the light map; None for those that are not."""
-    charts = contents.baked.charts if contents.baked is not None else {}
-    found = (charts.get(drawn.instance.id) for drawn in contents.instances)
+    charts = (_chart_of(drawn, contents) for drawn in contents.instances)
     return [
         None if chart is None else _unwrapped(drawn.model, chart.unwrapping)
-        for drawn, chart in zip(contents.instances, found, strict=True)
+        for drawn, chart in zip(contents.instances, charts, strict=True)
     ]
+
+
+def _chart_of(drawn: DrawnInstance, contents: SceneContents) -> LightChart | None:
+    """Return where an instance lies in the light map, in which nothing is of veils."""
+    if contents.baked is None or drawn.model.is_veil:
+        return None
+    return contents.baked.charts.get(drawn.instance.id)
 
 
 _unwrapped_models: weakref.WeakKeyDictionary[Model, tuple[Unwrapping, Unwrapping]] = (
@@ -197,9 +203,8 @@ def chart_table(contents: SceneContents) -> tuple[NDArray[np.float64], NDArray[n
     """Return each instance's offset and scale in the light map, and the pose that it is for."""
     count = len(contents.instances)
     charts, poses = np.zeros((count, 4)), np.full((count, 4, 4), np.nan)
-    baked = contents.baked.charts if contents.baked is not None else {}
     for row, drawn in enumerate(contents.instances):
-        chart = baked.get(drawn.instance.id)
+        chart = _chart_of(drawn, contents)
         if chart is not None:
             charts[row] = *chart.offset, *chart.scale
             poses[row] = chart.world_from_body

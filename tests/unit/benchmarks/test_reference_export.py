@@ -21,14 +21,14 @@ from benchmarks.reference import scene_export as export
 from benchmarks.reference import tracing
 from benchmarks.reference.compare import VIEWS, _camera
 from benchmarks.reference.parts import Parts, ply_bytes
-from benchmarks.reference.surfaces import LEAST_CLOTH, bsdf, emitter
+from benchmarks.reference.surfaces import bsdf, emitter
 from sailenv_ros.assets.primitives import Primitives
 from sailenv_ros.native.compile import SOURCES
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.labels import CategoryTable, Instance
 from sailenv_ros.types.lights import Environment, Light, SkyMap
-from sailenv_ros.types.model import Material, Model, ModelPart
+from sailenv_ros.types.model import LEAST_CLOTH, Material, Model, ModelPart
 from sailenv_ros.types.picture_settings import PictureSettings
 from sailenv_ros.types.snapshot import DrawnInstance, SceneContents, WorldSnapshot
 
@@ -344,7 +344,7 @@ def test_what_is_seen_through_covers_as_the_renderer_has_it(
 
 
 def test_cloth_is_as_rough_as_the_law_says() -> None:
-    """Once in the tracer's description, and once in the law."""
+    """Once in Python, and once in the law."""
     law = (SOURCES / "kernels" / "light_law.h").read_text()
     assert f"LEAST_CLOTH = {LEAST_CLOTH}f;" in law
 

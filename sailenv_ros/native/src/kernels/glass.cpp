@@ -14,15 +14,16 @@ constexpr float MOST_BENT = 0.3f;  // what a pixel bends more has no picture [ra
 constexpr float DARK = 1e-4f;      // radiance, exposed
 
 // A triangle's corners, as planes over depth, or over 1 where rays are parallel: object normal, uv,
-// place in the light map or 0 and what is hidden.
+// place in the light map or a factor and what is hidden.
 struct Planes {
     f8 along_x, along_y, at_0;
 };
 
-Planes planes_of(const Triangle& t, const Part& part) {
+Planes planes_of(const Triangle& t, const Part& part, const Light* light) {
     Planes p{splat(0.0f), splat(0.0f), splat(0.0f)};
+    const float* factors = factors_of(light, part, t.back);
     for (int k = 0; k < 3; k++) {
-        const f8 corner = load(part.vertices + 8 * static_cast<int64_t>(t.vertex[k]));
+        const f8 corner = vertex_of(part, factors, t.vertex[k]);
         p.along_x += corner * (t.edge[3 * k] * t.inverse_det);
         p.along_y += corner * (t.edge[3 * k + 1] * t.inverse_det);
         p.at_0 += corner * (t.edge[3 * k + 2] * t.inverse_det);
@@ -160,6 +161,7 @@ void blend(const Shading& s, const Triangle& t, const Part& part, const Planes& 
     }
     Vec3x8 around = light_around(light, part.id, normal, point);
     const f8 hidden = attribute(5) > 0.0f ? splat(0.0f) : attribute(6);
+    around = around * vertex_factor(attribute(5));
     if (any(wanted & (hidden > 0.0f))) {
         around = around * Vec3x8(arriving_share(hidden, colour.x), arriving_share(hidden, colour.y),
                                  arriving_share(hidden, colour.z));
@@ -291,7 +293,7 @@ void draw_glass_band(const Shading& s, const TriangleSet& glass, const DrawList&
     for (const uint32_t number : farthest_first(glass, projection, band)) {
         const Triangle& t = glass.triangles[number];
         const Part& part = parts.parts[t.part];
-        const Planes planes = planes_of(t, part);
+        const Planes planes = planes_of(t, part, s.light);
         const int32_t y0 = t.y0 > first_row ? t.y0 : first_row;
         const int32_t y1 = t.y1 < last_row ? t.y1 : last_row;
         for (int32_t y = y0; y <= y1; y++) {

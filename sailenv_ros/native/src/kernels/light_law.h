@@ -106,6 +106,12 @@ LIGHT_LAW Real arriving_share(Real hidden, Real albedo) {
     return open * max(((third * open) + second) * open + first, 1.0f);
 }
 
+// What light by terms is multiplied by where a surface has no place in the light map: `light_u` is
+// less than 0 by that there, or 0 for 1.
+LIGHT_LAW Real vertex_factor(Real light_u) {
+    return max(0.0f - light_u, 0.0f) + (light_u < 0.0f ? 0.0f : 1.0f);
+}
+
 // How far reflectance rises from that head-on towards 1 where light grazes (Schlick 1994, "An
 // inexpensive BRDF model for physically-based rendering").
 LIGHT_LAW Real schlick_share(Real cosine) {

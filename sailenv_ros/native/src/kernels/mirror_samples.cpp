@@ -142,7 +142,8 @@ int32_t follow_rays(const Shading& s, const Chunk& c, MirrorSample* const* sampl
         one.near = 1.0f - smoothstep(NEAR_M, FAR_M, met.hit.t);
         const vec3 along = vector_at(c.ray, i);
         const float distance = c.depth[i] * std::sqrt(dot(along, along));
-        set_hit(met, begin, ray, distance, 0.5f * c.roughness[i] * c.roughness[i], hits, hit_count);
+        set_hit(s.light, met, begin, ray, distance, 0.5f * c.roughness[i] * c.roughness[i], hits,
+                hit_count);
         one.hit = hit_count++;
     }
     if (hit_count > 0) shade_hits(s, hits, hit_count);

@@ -55,7 +55,8 @@ struct Part {
     float chart[4];                   // offset and scale in the light map
     int32_t flags, instance, id;
     int32_t has_chart;
-    int32_t first_vertex;  // among those of a model that deforms; else `RIGID`
+    int32_t first_vertex;    // among those of a model that deforms; else `RIGID`
+    int32_t first_of_model;  // number of the first vertex among those of the model's parts
 };
 
 constexpr int32_t RIGID = -1;
@@ -103,8 +104,10 @@ struct ReflectionPoint {
 };
 
 // A row of `instance_light`: terms of red, green and blue, see irradiance_of_terms; then the body's
-// three axes in the world, four numbers each, of which the last is 0.
+// three axes in the world, four numbers each, of which the last is 0; that of the first axis is 1
+// more than the number of the first vertex among `vertex_factors`, or 0.
 constexpr int32_t LIGHT_TERMS = 28, INSTANCE_ROW = 3 * LIGHT_TERMS + 12;
+constexpr int32_t FIRST_FACTOR = 3 * LIGHT_TERMS + 3;
 
 struct TracedScene;  // see traced_types.h
 struct RayLight;     // see ray_types.h
@@ -132,6 +135,7 @@ struct Light {
     const LayerSum* light_map;  // (height, width): irradiance / pi, share of main light
     int32_t light_map_width, light_map_height;
     const float* instance_light;  // (ids, INSTANCE_ROW)
+    const float* vertex_factors;  // what that is multiplied by at vertices
     float main_baked, main_clear;
     const int32_t* edge_index;   // (height, width) of the light map: number of a block, or -1; null
     const uint8_t* edge_blocks;  // (blocks, 6, 6): share of main light, see SunEdges

@@ -54,6 +54,22 @@ LANES_INLINE Vec3x8 analytic_sky(const Light& l, f8 up) {
     return sky_radiance(up, l.sky_zenith, l.sky_horizon, l.sky_ground);
 }
 
+// What the light on a part that can move is multiplied by at its vertices; null where by nothing:
+// it is known of the side that the normals are of.
+LANES_INLINE const float* factors_of(const Light* light, const Part& part, bool back) {
+    if (light == nullptr || !light->baked || back) return nullptr;
+    const float* row = light->instance_light + INSTANCE_ROW * static_cast<int64_t>(part.id);
+    const int64_t first = static_cast<int64_t>(row[FIRST_FACTOR]) - 1 + part.first_of_model;
+    return row[FIRST_FACTOR] > 0.0f ? light->vertex_factors + first : nullptr;
+}
+
+// What a vertex knows, see `Part`; with a factor as `vertex_factor` of light_law.h takes it.
+LANES_INLINE f8 vertex_of(const Part& part, const float* factors, int64_t number) {
+    f8 known = load(part.vertices + 8 * number);
+    if (factors != nullptr) known[5] = -factors[number];
+    return known;
+}
+
 // Irradiance / pi that instances know of themselves, on surfaces that are turned along `normal` and
 // lie at `point`; unit vectors and points in the world frame.
 Vec3x8 light_of_instances(const Light& light, i8 ids, i8 wanted, Vec3x8 normal, Vec3x8 point);

@@ -139,6 +139,7 @@ void light_from_bake(const Shading& s, Chunk& c) {
         if (any(free)) {
             Vec3x8 found =
                 light_of_instances(light, load(c.id + i), free, c.normal.at(i), c.point.at(i));
+            found = found * vertex_factor(load(c.light_u + i));
             const f8 hidden = load(c.light_v + i);
             if (any(free & (hidden > 0.0f))) {
                 const Vec3x8 albedo = c.base.at(i) * (1.0f - load(c.metallic + i));

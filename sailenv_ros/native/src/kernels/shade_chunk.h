@@ -42,7 +42,8 @@ struct Chunk {
     // How unit normals change from a pixel to the one beside or below where they change more; 0 of
     // what does not mirror sharply.
     Vectors bend;
-    // light_u is 0 of what has no light map: then light_v is the share that it hides of itself.
+    // Of what has no light map light_u is a factor, see `vertex_factor`, and light_v the share that
+    // it hides of itself.
     alignas(32) float u[CHUNK], v[CHUNK], light_u[CHUNK], light_v[CHUNK];
     // Changes of uv / depth and of 1 / depth from pixel to pixel; of uv and of -depth where rays
     // are parallel.

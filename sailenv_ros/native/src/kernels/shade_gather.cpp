@@ -61,19 +61,20 @@ LANES_INLINE void set_planes(const Shading& s, const Triangle& t, float x, float
                              f8* down) {
     const Part& part = s.parts->parts[t.part];
     const InstanceFrame& frame = s.frames[part.instance];
-    const float* vertex = part.vertices;
-    const f8 a0 = load(vertex + 8 * static_cast<int64_t>(t.vertex[0]));
-    const f8 a1 = load(vertex + 8 * static_cast<int64_t>(t.vertex[1]));
-    const f8 a2 = load(vertex + 8 * static_cast<int64_t>(t.vertex[2]));
+    const float* factors = factors_of(s.light, part, t.back);
+    const f8 a0 = vertex_of(part, factors, t.vertex[0]);
+    const f8 a1 = vertex_of(part, factors, t.vertex[1]);
+    const f8 a2 = vertex_of(part, factors, t.vertex[2]);
     const float q = t.inverse_det;
     const f8 object_x = a0 * (t.edge[0] * q) + a1 * (t.edge[3] * q) + a2 * (t.edge[6] * q);
     const f8 object_0 = a0 * ((t.edge[1] * y + t.edge[2]) * q) +
                         a1 * ((t.edge[4] * y + t.edge[5]) * q) +
                         a2 * ((t.edge[7] * y + t.edge[8]) * q);
     const bool charted = part.has_chart && s.at_baked_pose[part.instance];
-    // What has no chart has the share that it hides of itself there.
-    const float along = charted ? part.chart[3] : part.has_chart ? 0.0f : 1.0f;
-    const f8 kept = {0, 0, 0, 1, 1, charted ? part.chart[2] : 0.0f, along, 0};
+    // What has no chart has a factor and the share that it hides of itself there.
+    const float free = part.has_chart ? 0.0f : 1.0f;
+    const f8 kept = {0, 0, 0, 1, 1, charted ? part.chart[2] : free, charted ? part.chart[3] : free,
+                     0};
     r.moved = f8{0, 0, 0, 0, 0, charted ? part.chart[0] : 0.0f, charted ? part.chart[1] : 0.0f, 0};
     const float turned = t.back ? -1.0f : 1.0f;
     const f8 n0 = load(frame.normal_columns[0]) * turned,

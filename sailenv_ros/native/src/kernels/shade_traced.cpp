@@ -250,7 +250,7 @@ void trace_rays(const Shading& s, const Chunk& c, int32_t number, TracedPixels& 
         const vec3 along = vector_at(c.ray, i);
         const float distance = c.depth[i] * std::sqrt(dot(along, along));
         const float rough = 0.5f * c.roughness[i] * c.roughness[i];
-        set_hit(met, begin, ray, distance, max(pixels.angle[i], rough), hits, count);
+        set_hit(s.light, met, begin, ray, distance, max(pixels.angle[i], rough), hits, count);
         from[count++] = i;
     }
     if (count == 0) return;
@@ -402,7 +402,7 @@ void look_from_glass(const Shading& s, Vec3x8 point, Vec3x8 ray, f8 distance, ui
         const vec3 along(ray.x[k], ray.y[k], ray.z[k]);
         const SceneHit met = closest_hit(*s.light->traced, begin, along, ENDLESS);
         if (!is_drawn(met)) continue;
-        set_hit(met, begin, along, distance[k], USUAL_ANGLE, hits, count);
+        set_hit(s.light, met, begin, along, distance[k], USUAL_ANGLE, hits, count);
         of[count++] = k;
     }
     if (count == 0) return;

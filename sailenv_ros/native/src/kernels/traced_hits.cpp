@@ -41,20 +41,18 @@ SceneHit closest_hit(const TracedScene& scene, vec3 from, vec3 ray, float reach)
 }
 
 // What a triangle's corners know of the place, and what its part is made of.
-void set_hit(const SceneHit& met, vec3 from, vec3 ray, float distance, float angle, Chunk& c,
-             int32_t i) {
+void set_hit(const Light* light, const SceneHit& met, vec3 from, vec3 ray, float distance,
+             float angle, Chunk& c, int32_t i) {
     const TracedInstance& one = *met.instance;
     const RayShape& shape = *one.placed.shape;
     const int32_t triangle = shape.order[met.hit.triangle];
     const Part& part = one.parts[one.part_of[triangle]];
     const uint32_t* vertex = one.vertices + 3 * static_cast<int64_t>(triangle);
-    const float* corner[3];
-    for (int k = 0; k < 3; k++) corner[k] = part.vertices + 8 * static_cast<int64_t>(vertex[k]);
+    const float* factors = factors_of(light, part, false);
+    f8 corner[3];
+    for (int k = 0; k < 3; k++) corner[k] = vertex_of(part, factors, vertex[k]);
     const float weight[3] = {1.0f - met.hit.second - met.hit.third, met.hit.second, met.hit.third};
-    float known[8];
-    for (int k = 0; k < 7; k++) {
-        known[k] = weight[0] * corner[0][k] + weight[1] * corner[1][k] + weight[2] * corner[2][k];
-    }
+    const f8 known = corner[0] * weight[0] + corner[1] * weight[1] + corner[2] * weight[2];
     const float* m = one.placed.body_from_world;
     const float own[3] = {known[0] * one.inverse_scale[0], known[1] * one.inverse_scale[1],
                           known[2] * one.inverse_scale[2]};
@@ -68,11 +66,12 @@ void set_hit(const SceneHit& met, vec3 from, vec3 ray, float distance, float ang
     c.u[i] = known[3];
     c.v[i] = known[4];
     const bool charted = part.has_chart && one.at_baked_pose;
-    c.light_u[i] = charted ? known[5] * part.chart[2] + part.chart[0] : 0.0f;
-    // Of what has no chart the share that it hides of itself.
-    c.light_v[i] = charted          ? known[6] * part.chart[3] + part.chart[1]
-                   : part.has_chart ? 0.0f
-                                    : known[6];
+    // What has no chart has a factor and the share that it hides of itself there.
+    const float free = part.has_chart ? 0.0f : 1.0f;
+    c.light_u[i] = charted              ? known[5] * part.chart[2] + part.chart[0]
+                   : towards_eye > 0.0f ? free * known[5]
+                                        : 0.0f;
+    c.light_v[i] = charted ? known[6] * part.chart[3] + part.chart[1] : free * known[6];
     put(c.base, i, {part.colour[0], part.colour[1], part.colour[2]});
     c.roughness[i] = part.roughness;
     c.metallic[i] = part.metallic;

@@ -29,8 +29,8 @@ static inline bool is_drawn(const SceneHit& met) {
 // Begins with places that rays meet: `set_hit` adds the i-th. `distance` is how far the ray's
 // origin is from the eye [m], `angle` how far rays beside it are turned away [rad].
 void begin_hits(Chunk& c);
-void set_hit(const SceneHit& met, vec3 from, vec3 ray, float distance, float angle, Chunk& c,
-             int32_t i);
+void set_hit(const Light* light, const SceneHit& met, vec3 from, vec3 ray, float distance,
+             float angle, Chunk& c, int32_t i);
 
 // The light that the first `count` places that were met send back along the rays.
 void shade_hits(const Shading& s, Chunk& c, int32_t count);

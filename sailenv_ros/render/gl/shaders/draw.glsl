@@ -8,4 +8,5 @@ uniform vec4 draw[ROWS];
 #define MATERIAL_COLOUR draw[6]      // the same, or that of the glow where there is one; alpha
 #define MATERIAL_FINISH draw[7]      // roughness, metallic, alpha cut-off, emission
 #define OPTICAL_NORMAL_FROM_OBJECT transpose(mat3(draw[8].xyz, draw[9].xyz, draw[10].xyz))
+#define TO_MODEL_VERTEX draw[8].w    // from numbers of vertices to those among the model's own
 #define LIGHT_CHART draw[11]         // offset and scale in the light map, 0 for none

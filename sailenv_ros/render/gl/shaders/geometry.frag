@@ -17,7 +17,7 @@ layout(location = 2) out vec4 out_albedo;  // square root of linear albedo, emis
 #endif
 #ifdef BAKED
 in vec2 light_uv;
-layout(location = 3) out vec2 out_light_at;  // place in the light map, or 0 and what is hidden
+layout(location = 3) out vec2 out_light_at;  // place in the light map, or a factor and what is hidden
 #endif
 #endif
 // Views that are written as they are; the fourth component is 1 where there is a surface.
@@ -81,7 +81,8 @@ void main() {
     out_shape = vec4(octahedral(normal), rough_metal);
     out_albedo = vec4(colour, MATERIAL_FINISH.w);
 #ifdef BAKED
-    out_light_at = light_uv;
+    // Factors are known of the front.
+    out_light_at = gl_FrontFacing ? light_uv : max(light_uv, vec2(0.0));
 #endif
 #endif
 #endif

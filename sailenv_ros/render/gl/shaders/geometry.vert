@@ -8,6 +8,9 @@ out vec2 light_uv;
 #endif
 
 #include "draw.glsl"
+#ifdef BAKED
+#include "vertex_factors.glsl"
+#endif
 
 #include "lens.h"
 uniform Lens lens;
@@ -28,6 +31,8 @@ void main() {
     uv = in_uv;
 #ifdef BAKED
     light_uv = LIGHT_CHART.xy + LIGHT_CHART.zw * in_light_uv;
+    float factor = factor_of_vertex(int(INSTANCE_ID + 0.5), gl_VertexID + int(TO_MODEL_VERTEX));
+    if (factor > 0.0) light_uv.x = -factor;
 #endif
 #endif
 }

@@ -12,13 +12,14 @@ layout(location = 0, index = 1) out vec4 out_through;  // share of what lies beh
 in vec3 optical_normal;
 in vec2 uv;
 #ifdef BAKED
-in vec2 light_uv;  // place in the light map, or 0 and what is hidden
+in vec2 light_uv;  // place in the light map, or a factor and what is hidden
 #endif
 
 // Irradiance / pi on a surface.
 vec3 light_around(vec3 world_normal, vec3 point, vec3 albedo) {
 #ifdef BAKED
     vec3 light = light_of_instance(int(INSTANCE_ID + 0.5), world_normal, world_from_optical * point + eye);
+    light *= vertex_factor(gl_FrontFacing ? light_uv.x : 0.0);
     float hidden = light_uv.x > 0.0 ? 0.0 : light_uv.y;
     return light * vec3(arriving_share(hidden, albedo.r), arriving_share(hidden, albedo.g), arriving_share(hidden, albedo.b));
 #else

@@ -19,7 +19,7 @@ uniform vec3 shadow_texel;       // size of a texel [m], its share of the map, p
 uniform float outside_id;          // of what lies outside the room, which shines as the sky; 0
 uniform float outside_radiance;    // of its white
 #ifdef BAKED
-uniform sampler2D light_at;        // place in the light map, 0 where there is none
+uniform sampler2D light_at;        // place in the light map, or a factor and what is hidden
 uniform sampler2D light_map;       // irradiance / pi; share of the main light that arrives
 uniform sampler2DShadow static_shadow_map;  // of what stands still; the other is of what moves
 uniform float main_transmittance;   // of glass, for what is not in the light map
@@ -127,8 +127,8 @@ void main() {
     vec4 mapped = textureLod(light_map, place, 0.0);
     int id = int(texelFetch(surface, pixel, 0).y + 0.5);
     vec3 place_in_world = world_from_optical * point + eye;
-    vec3 probed = light_of_instance(id, world_normal, place_in_world);
-    // What has no place in the light map has there the share that it hides of itself.
+    vec3 probed = light_of_instance(id, world_normal, place_in_world) * vertex_factor(place.x);
+    // What has no place in the light map has there a factor and the share that it hides of itself.
     for (int k = 0; k < 3; k++) probed[k] *= arriving_share(place.y, diffuse[k]);
     vec3 around = mix(probed, mapped.rgb, charted);
     float past_what_stands = main_transmittance * texture(static_shadow_map, in_shadow);

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -15,12 +15,14 @@ from sailenv_ros.light.relight.baked_scene import albedo_of_model
 from sailenv_ros.light.relight.movable_objects import MovableObjects
 from sailenv_ros.light.relight.object_light import ObjectLighting, PlacedObject, SurfacePoints
 from sailenv_ros.light.relight.object_lights import ObjectLights, with_object_light
-from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
+from sailenv_ros.light.relight.quality import AT_VERTICES, FINE, QUICK, Quality
+from sailenv_ros.light.relight.vertex_points import vertex_points
 from sailenv_ros.types.baked_light import ObjectLight
 from sailenv_ros.types.geometry import Pose
-from sailenv_ros.types.model import Model
+from sailenv_ros.types.model import Model, ModelPart
 from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.bake_scenes import ground
+from tests.support.curved_meshes import bowl
 from tests.support.movable_boxes import (
     BLACK,
     BOX,
@@ -111,6 +113,11 @@ def test_what_stands_between_takes_a_lamps_light() -> None:
     assert np.abs(shaded.direct).max() == 0.0
 
 
+def _moved_part(part: ModelPart, by: tuple[float, ...]) -> ModelPart:
+    positions = part.mesh.positions + np.array(by, np.float32)
+    return replace(part, mesh=replace(part.mesh, positions=positions))
+
+
 def test_light_in_an_open_box_comes_from_where_it_is_open() -> None:
     """Above a black floor its inner sides see sky wherever they see out; its outer ones, half."""
     half, tall, thick = 0.15, 0.15, 0.01
@@ -124,8 +131,7 @@ def test_light_in_an_open_box_comes_from_where_it_is_open() -> None:
     parts = []
     for size, at in walls:
         (part,) = model_of(box_mesh(size), base_colour=BLACK).parts
-        moved_there = replace(part.mesh, positions=part.mesh.positions + np.array(at, np.float32))
-        parts.append(replace(part, mesh=moved_there))
+        parts.append(_moved_part(part, at))
     box = Model(name="box", parts=tuple(parts))
     floor = ground(20.0, base_colour=BLACK)
     found = light_on(room((box, Pose((0.0, 0.0, 0.4))), environment=WHITE_SKY, floor=floor))
@@ -137,6 +143,77 @@ def test_light_in_an_open_box_comes_from_where_it_is_open() -> None:
         # Sides of one normal with unlike light, which 28 terms tell about.
         assert outer == pytest.approx(0.4, rel=0.1)
         assert inner == pytest.approx(0.8, rel=0.1)
+
+
+def test_in_a_hollow_a_lamp_shines_where_it_is_seen() -> None:
+    """Half a sphere with a lamp beside: what the rim hides is dark, the rest as arithmetic says."""
+    hollow, middle = model_of(bowl(), base_colour=BLACK, roughness=1.0), np.array([0.0, 0.0, 2.0])
+    lamp = np.array([1.6, 0.0, 3.0])
+    lit = replace(LAMP, position_m=tuple(lamp.tolist()))
+    snapshot = room((hollow, Pose((0.0, 0.0, 2.0))), lights=(lit,))
+    found = ObjectLights().update(snapshot, scene_of(snapshot), (), threads=1)[2].found[1, :, 1]
+    normals = hollow.normals.astype(np.float64)
+    points = middle - normals
+    way = lamp - points
+    wanted = (normals * way).sum(axis=1) / (np.pi * np.linalg.norm(way, axis=1) ** 3)
+    through = points + way * ((2.0 - points[:, 2]) / way[:, 2])[:, None]
+    away = np.linalg.norm(through[:, :2], axis=1)
+    inside, below = points[:, 2] < 1.9, (away < 0.95) & (wanted > 0.02)
+    np.testing.assert_allclose(found[inside & below], wanted[inside & below], rtol=0.05)
+    assert np.abs(found[inside & (away > 1.05)]).max() == 0.0
+    assert min((inside & below).sum(), (inside & (away > 1.05)).sum()) > 60
+
+
+def test_few_rays_leave_no_bright_dots_at_vertices() -> None:
+    """One that met a lamp's shade is held to the open light; the others keep their quotient."""
+    cup = bowl()
+    points = vertex_points(model_of(replace(cup, positions=0.1 * cup.positions)))
+    assert points is not None
+    ramp = np.linspace(0.1, 0.3, len(points.positions)) * points.open_shares
+    fitted = np.stack([ramp, 2.0 * ramp], axis=-1)[None]
+    even, terms = points.at_vertices(0.7 * fitted, fitted)
+    np.testing.assert_allclose(even, 0.7 * terms, rtol=1e-9)
+    noisy = 0.7 * fitted
+    noisy[0, 300] *= 40.0
+    evened, _ = points.at_vertices(noisy, fitted)
+    away = np.linalg.norm(0.1 * cup.positions - points.positions[300], axis=1)
+    assert (evened / terms)[..., 0].max() < 1.0
+    assert evened[..., 0].sum() > even[..., 0].sum()
+    np.testing.assert_allclose(evened[0, away > 0.05], even[0, away > 0.05], rtol=1e-9)
+
+
+def test_at_the_corners_of_a_large_face_light_is_that_of_the_face() -> None:
+    """A panel in a frame that hides its edges: these say nothing of its middle."""
+    (part,) = model_of(box_mesh((1.0, 1.0, 0.01)), base_colour=BLACK).parts
+    rails = []
+    for size, at in (
+        ((1.0, 0.04, 0.3), (0.0, 0.48, 0.155)),
+        ((1.0, 0.04, 0.3), (0.0, -0.48, 0.155)),
+        ((0.04, 0.92, 0.3), (0.48, 0.0, 0.155)),
+        ((0.04, 0.92, 0.3), (-0.48, 0.0, 0.155)),
+    ):
+        (rail,) = model_of(box_mesh(size), base_colour=BLACK).parts
+        rails.append(_moved_part(rail, at))
+    framed = Model(name="framed", parts=(part, *rails))
+    assert vertex_points(framed) is not None
+    snapshot = room((framed, IN_THE_AIR), lights=(replace(LAMP, position_m=(0.0, 0.0, 4.0)),))
+    lit = ObjectLights().update(snapshot, scene_of(snapshot), (), threads=1)[2]
+    face = np.flatnonzero((framed.normals[:24, 2] > 0.9) & (framed.positions[:24, 2] > 0.0))
+    # Straight below at 2.995 m; in the corners less, and the rails hide a narrow border.
+    assert lit.found[1, face, 1].min() > 0.75 / (np.pi * 2.995**2)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "roughness", "asked"),
+    [("opaque", 0.1, True), ("blend", 0.1, False), ("blend", 0.9, True)],
+)
+def test_vertices_are_asked_of_what_hides_itself(
+    alpha: Literal["opaque", "blend"], roughness: float, asked: bool
+) -> None:
+    """And of veils; not of what is convex or of glass."""
+    hollow = model_of(bowl(), base_colour=(1.0, 1.0, 1.0, 0.5), roughness=roughness, alpha=alpha)
+    assert vertex_points(BOX) is None
+    assert (vertex_points(hollow) is not None) is asked
 
 
 def test_sides_that_face_each_other_are_darker() -> None:
@@ -173,7 +250,7 @@ def test_what_an_object_sends_back_knows_of_its_own_shadow() -> None:
 
 
 def assert_same(one: ObjectLight, two: ObjectLight) -> None:
-    for name in ("bounced", "direct", "axes"):
+    for name in ("bounced", "direct", "axes", "found", "fitted"):
         assert np.array_equal(getattr(one, name), getattr(two, name))
 
 
@@ -251,7 +328,8 @@ def test_light_on_what_rests_is_kept_of_a_beginning(
 ) -> None:
     """Of a bake on disk: it is what would be found, and is found once; later places are not."""
     monkeypatch.setenv("SAILENV_CACHE", str(tmp_path))
-    snapshot = room((BOX, IN_THE_AIR), (BOX, Pose((0.4, 0.3, 1.0))), environment=WHITE_SKY)
+    hollow = model_of(bowl(12), base_colour=BLACK)
+    snapshot = room((BOX, IN_THE_AIR), (hollow, Pose((0.4, 0.3, 1.0))), environment=WHITE_SKY)
 
     def seen() -> list[dict[int, ObjectLight]]:
         lights, scene = ObjectLights(), scene_on_disk(snapshot)
@@ -268,6 +346,35 @@ def test_light_on_what_rests_is_kept_of_a_beginning(
         assert one.keys() == two.keys() == {2, 3}
         for id_ in one:
             assert_same(one[id_], two[id_])
+
+
+def test_light_at_vertices_is_found_where_something_large_changes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Not again for what is small beside it, and not of what is small or moves."""
+    asked = asked_qualities(monkeypatch)
+    hollow, small = model_of(bowl(12), base_colour=BLACK), model_of(bowl(6), base_colour=BLACK)
+    things = (hollow, IN_THE_AIR), (small, Pose((1.2, 0.0, 1.0))), (BOX, Pose((-1.1, 0.0, 1.0)))
+    snapshot = room(*things, environment=WHITE_SKY)
+    scene, lights = scene_of(snapshot), ObjectLights()
+    first = lights.update(snapshot, scene, (), threads=1)
+    assert asked.count(AT_VERTICES) == 2
+    assert first[2].found.shape == first[2].fitted.shape == (1, len(hollow.positions), 2)
+    assert not first[4].found.size
+    asked.clear()
+    later = lights.update(moved(snapshot, 3, -1.2), scene, (), threads=1)
+    assert later[2].found is first[2].found
+    assert later[3] is first[3]
+    assert AT_VERTICES not in asked
+    velocities = np.zeros((4, 2, 3))
+    velocities[2, 0, 0] = 0.5
+    passing = lights.update(replace(snapshot, velocities=velocities), scene, (), threads=1)
+    assert not passing[3].found.size
+    assert asked.count(AT_VERTICES) == 1
+    assert not np.array_equal(passing[2].found, first[2].found)
+    back = lights.update(snapshot, scene, (), threads=1)
+    assert_same(back[2], first[2])
+    assert_same(back[3], first[3])
 
 
 def test_creeping_by_less_than_can_be_seen_changes_nothing() -> None:
