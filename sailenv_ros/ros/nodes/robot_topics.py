@@ -14,6 +14,7 @@ from typing import Any
 
 from geometry_msgs.msg import TransformStamped, Twist
 from nav_msgs.msg import OccupancyGrid, Odometry
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor
 from rclpy.node import Node
 from sensor_msgs.msg import Imu, JointState, LaserScan
@@ -29,7 +30,13 @@ from sailenv_msgs_py.robot_msgs import (
 from sailenv_msgs_py.space_msgs import occupancy_grid_to_msg
 from sailenv_msgs_py.transforms import twist_from_msg
 from sailenv_ros.errors import InvalidState, SailenvError, SimulationClosed
-from sailenv_ros.ros.nodes.qos import command_qos, frame_qos, latched_qos, transform_publishers
+from sailenv_ros.ros.nodes.qos import (
+    command_qos,
+    frame_qos,
+    latched_qos,
+    no_events,
+    transform_publishers,
+)
 from sailenv_ros.ros.nodes.requests import OperationRunner
 from sailenv_ros.ros.nodes.robot_frames import MAP, RobotFrames, map_transform, ros_name
 from sailenv_ros.ros.nodes.simulation_topic import SimulationTopic
@@ -128,14 +135,18 @@ class _Endpoints:
         self._prefix = ros_name(robot.name)
         self._due: dict[str, int] = {}
         self._map_told = False
+        # rclpy's groups refer to all that they ever had; the node's own one outlives the robot.
+        group = MutuallyExclusiveCallbackGroup()
 
         def publisher(kind: Any, topic: str, *, latched: bool = False) -> Any:
             quality = latched_qos() if latched else frame_qos()
-            return node.create_publisher(kind, f"{self._prefix}/{topic}", quality)
+            return node.create_publisher(
+                kind, f"{self._prefix}/{topic}", quality, event_callbacks=no_events()
+            )
 
         def subscription(kind: Any, topic: str, callback: Callable[[Any], None]) -> Any:
             return node.create_subscription(
-                kind, f"{self._prefix}/{topic}", callback, command_qos()
+                kind, f"{self._prefix}/{topic}", callback, command_qos(), callback_group=group
             )
 
         self._joints = publisher(JointState, "joint_states")
