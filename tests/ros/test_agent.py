@@ -347,6 +347,16 @@ def test_agents_that_come_and_go_leave_no_threads(keeper: Agent) -> None:
     assert threading.active_count() == before
 
 
+def test_agents_that_come_and_go_leave_nothing_in_the_shared_node(keeper: Agent) -> None:
+    """A callback group refers for ever to each entity that was ever added to it."""
+    kept = keeper._remote.connection.node.default_callback_group.entities
+    before = len(kept)
+    for _ in range(3):
+        with Agent(**SMALL, namespace=NAMESPACE) as agent:
+            agent.get_frame()
+    assert len(kept) == before
+
+
 def test_an_agent_lives_beside_the_users_own_node(keeper: Agent) -> None:
     """A user's rclpy, started before or after, is neither needed nor disturbed."""
     code = """

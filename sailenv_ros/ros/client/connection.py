@@ -16,6 +16,7 @@ from collections.abc import Callable
 from typing import Any
 
 import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -291,7 +292,11 @@ class Connection:
         if self._closed:
             raise SimulationClosed("the Agent was closed")
         if service not in self._clients:
-            self._clients[service] = self.node.create_client(srv_type, service)
+            # rclpy's groups refer to all that they ever had, and the node's own one stays.
+            group = MutuallyExclusiveCallbackGroup()
+            self._clients[service] = self.node.create_client(
+                srv_type, service, callback_group=group
+            )
         return self._clients[service]
 
     def _take_info(self, msg: SceneInfoMsg) -> None:

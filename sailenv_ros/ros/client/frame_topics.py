@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import Image
 
@@ -45,6 +46,8 @@ class AgentTopics:
         self._last_arrival_s = 0.0
         self._first_revision: int | None = None
         self._subscriptions: dict[str, Any] = {}
+        # rclpy's groups refer to all that they ever had, and the node's own one stays.
+        self._group = MutuallyExclusiveCallbackGroup()
         self._subscribe("frame_info", FrameInfo, self._take_info)
         self.add_views(views)
 
@@ -168,7 +171,7 @@ class AgentTopics:
 
     def _subscribe(self, topic: str, kind: type, callback: Any) -> None:
         self._subscriptions[topic] = self._connection.node.create_subscription(
-            kind, f"{self._agent}/{topic}", callback, _QOS
+            kind, f"{self._agent}/{topic}", callback, _QOS, callback_group=self._group
         )
 
     def _taker(self, view: str) -> Callable[[Image, Any], None]:
