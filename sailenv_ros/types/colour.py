@@ -16,6 +16,7 @@ from sailenv_ros.errors import InvalidRequest
 
 __all__ = [
     "LINEAR_OF_SRGB8",
+    "HALF_MOST",
     "LUMINANCE",
     "XYZ_FROM_RGB",
     "hex_from_linear",
@@ -45,6 +46,9 @@ def srgb_from_linear(linear: ArrayLike) -> NDArray[np.float64]:
 LINEAR_OF_SRGB8: NDArray[np.float64] = linear_from_srgb(np.arange(256) / 255.0)
 """(256,) float64: linear light, 0 to 1, by the 8-bit code."""
 LINEAR_OF_SRGB8.flags.writeable = False
+
+HALF_MOST = 6e4
+"""Brightest light that is kept in half precision; what is brighter becomes it."""
 
 LUMINANCE: NDArray[np.float64] = np.array([0.2126, 0.7152, 0.0722])
 """(3,) float64: share of linear red, green and blue in luminance (ITU-R BT.709)."""

@@ -164,7 +164,7 @@ class Model:
         """Number of triangles of all parts."""
         return sum(len(part.mesh.triangles) for part in self.parts)
 
-    @property
+    @cached_property
     def is_veil(self) -> bool:
         """Whether all of it is see-through cloth."""
         return bool(self.parts) and all(part.material.is_veil for part in self.parts)

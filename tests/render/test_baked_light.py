@@ -16,6 +16,7 @@ from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight, SunEdges
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Model
+from sailenv_ros.types.snapshot import WorldSnapshot
 from sailenv_ros.types.views import LIT_VIEWS, RENDERED_VIEWS
 from tests.render.conftest import Render
 from tests.support.baked import SIZE, baked, chart, layer
@@ -131,9 +132,7 @@ def test_each_side_of_what_can_move_is_lit_by_its_own_place(render: Render) -> N
     own = ObjectLight(
         bounced=terms, direct=np.zeros((1, LIGHT_TERMS), np.float32), axes=axes.astype(np.float32)
     )
-    scene = snapshot_of(
-        [Thing(WALL, AHEAD)], lights=(), environment=DARK, baked=baked({}, [], layer(None))
-    )
+    scene = unmapped(WALL, AHEAD)
     camera = camera_at()
     got = linear(render(replace(scene, object_light={1: own}), camera, "rgb")["rgb"])
     k = camera.intrinsics
@@ -145,18 +144,26 @@ def test_each_side_of_what_can_move_is_lit_by_its_own_place(render: Render) -> N
     np.testing.assert_allclose(got, np.maximum(wanted, 0.0) * ALBEDO, rtol=0.05, atol=0.004)
 
 
+def even_light(radiance: float) -> ObjectLight:
+    """Irradiance / pi that is the same everywhere."""
+    terms = np.zeros((1, LIGHT_TERMS, 3), np.float32)
+    terms[0, 0] = radiance
+    even = np.zeros((1, LIGHT_TERMS), np.float32)
+    return ObjectLight(bounced=terms, direct=even, axes=np.eye(3, dtype=np.float32))
+
+
+def unmapped(model: Model, pose: Pose) -> WorldSnapshot:
+    """A dark baked room in which one thing stands that has no chart."""
+    room = baked({}, [], layer(None))
+    return snapshot_of([Thing(model, pose)], lights=(), environment=DARK, baked=room)
+
+
 def test_where_an_object_hides_itself_less_light_arrives(render: Render) -> None:
     """In half a sphere a half does; between its parts light goes to and fro."""
     inside = model_of(bowl(), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0)
-    terms = np.zeros((1, LIGHT_TERMS, 3), np.float32)
-    terms[0, 0] = 0.8
-    even = np.zeros((1, LIGHT_TERMS), np.float32)
-    own = ObjectLight(bounced=terms, direct=even, axes=np.eye(3, dtype=np.float32))
-    pose = Pose.from_rpy_deg((3.0, 0.0, 0.0), (0.0, -90.0, 0.0))
-    scene = snapshot_of(
-        [Thing(inside, pose)], lights=(), environment=DARK, baked=baked({}, [], layer(None))
-    )
-    got = linear(render(replace(scene, object_light={1: own}), camera_at(), "rgb")["rgb"])
+    scene = unmapped(inside, Pose.from_rpy_deg((3.0, 0.0, 0.0), (0.0, -90.0, 0.0)))
+    light = {1: even_light(0.8)}
+    got = linear(render(replace(scene, object_light=light), camera_at(), "rgb")["rgb"])
     height, width = got.shape[:2]
     seen = got[height // 3 : -height // 3, width // 3 : -width // 3].mean(axis=(0, 1))
     share = arriving_share(np.full(3, 0.5), ALBEDO)
@@ -170,14 +177,6 @@ def with_factors(base: ObjectLight, factors: NDArray[np.float64]) -> ObjectLight
     fitted = np.full((1, len(factors), 2), 0.25)
     found = fitted * factors[:, None]
     return replace(base, found=found.astype(np.float16), fitted=fitted.astype(np.float16))
-
-
-def even_light(radiance: float) -> ObjectLight:
-    """Irradiance / pi that is the same everywhere."""
-    terms = np.zeros((1, LIGHT_TERMS, 3), np.float32)
-    terms[0, 0] = radiance
-    even = np.zeros((1, LIGHT_TERMS), np.float32)
-    return ObjectLight(bounced=terms, direct=even, axes=np.eye(3, dtype=np.float32))
 
 
 @pytest.mark.parametrize("alpha", ["opaque", "blend"])
@@ -207,10 +206,7 @@ def test_light_at_vertices_is_that_of_the_front(render: Render) -> None:
     sheet = model_of(
         wall_mesh(8.0, 8.0), base_colour=(0.5, 0.4, 0.3, 1.0), roughness=1.0, double_sided=True
     )
-    pose = Pose.from_rpy_deg((3.0, 0.0, 0.0), (0.0, 0.0, 180.0))
-    scene = snapshot_of(
-        [Thing(sheet, pose)], lights=(), environment=DARK, baked=baked({}, [], layer(None))
-    )
+    scene = unmapped(sheet, Pose.from_rpy_deg((3.0, 0.0, 0.0), (0.0, 0.0, 180.0)))
     light = {1: with_factors(even_light(0.4), np.full(4, 2.0))}
     got = linear(render(replace(scene, object_light=light), camera_at(), "rgb")["rgb"])
     np.testing.assert_allclose(got.mean(axis=(0, 1)), 0.4 * ALBEDO, rtol=0.04, atol=0.003)
@@ -230,9 +226,7 @@ def test_ambient_light_is_the_same_at_vertices(render: Render) -> None:
 
 def test_light_of_a_model_that_is_gone_is_not_taken_for_the_next_ones(render: Render) -> None:
     """It has another number of vertices: what was found at them says nothing."""
-    scene = snapshot_of(
-        [Thing(WALL, AHEAD)], lights=(), environment=DARK, baked=baked({}, [], layer(None))
-    )
+    scene = unmapped(WALL, AHEAD)
     light = {1: with_factors(even_light(0.4), np.full(24, 2.0))}
     got = linear(render(replace(scene, object_light=light), camera_at(), "rgb")["rgb"])
     np.testing.assert_allclose(got.mean(axis=(0, 1)), 0.4 * ALBEDO, rtol=0.04, atol=0.003)

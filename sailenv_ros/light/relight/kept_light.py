@@ -60,7 +60,7 @@ def stacked(light: Sequence[ObjectLight]) -> Arrays:
     for name in _OF_VERTICES:
         each = [getattr(one, name).reshape(layers, -1, 2) for one in light]
         arrays[name] = np.concatenate(each, axis=1)
-        arrays["vertices"] = np.array([one.shape[1] for one in each])
+    arrays["vertices"] = np.array([one.found.shape[1] for one in light])
     return arrays
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sailenv_ros.native.relight_kernels import spread_change
 from sailenv_ros.native.relight_types import MappedTexels, PatchMap
 from sailenv_ros.types.baked_light import LightLayer, SunEdges
+from sailenv_ros.types.colour import HALF_MOST
 
 __all__ = ["DirectDelta", "LayerUpdates"]
 
@@ -100,7 +101,7 @@ class LayerUpdates:
             return layer
         state, value, share = delta
         direct = layer.direct.copy()
-        _put(direct, self._texels.arrays["places"], state, value, 6e4)
+        _put(direct, self._texels.arrays["places"], state, value, HALF_MOST)
         if layer.visibility is None:
             return replace(layer, direct=direct)
         visibility = layer.visibility.copy()

@@ -36,7 +36,7 @@ from sailenv_ros.rays.ray_patterns import low_discrepancy_points, sequence_point
 from sailenv_ros.rays.self_occlusion import LEAST_WEIGHT, vertex_occlusion
 from sailenv_ros.rays.static_geometry import PlacedModel
 from sailenv_ros.types.baked_light import LIGHT_TERMS, ObjectLight
-from sailenv_ros.types.colour import LUMINANCE
+from sailenv_ros.types.colour import HALF_MOST, LUMINANCE
 from sailenv_ros.types.geometry import invert
 from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.model import Model
@@ -56,9 +56,6 @@ HIDDEN_M = 0.1
 """Points that see nothing farther than a few centimetres are seldom seen, and count less: by the
 harmonic mean of the distances of what they see over this [m]."""
 
-
-HALF_MOST = 6e4
-"""Brighter light is kept as so bright."""
 
 LEAST_OPEN = 0.1
 """Open share below which points tell too little of what arrives there to divide by it."""

@@ -15,6 +15,7 @@ from sailenv_ros.light.relight.moved_surfaces import MovedSurfaces
 from sailenv_ros.light.relight.quality import FINE
 from sailenv_ros.native.relight_kernels import smooth_change, spread_change
 from sailenv_ros.native.relight_types import PatchMap
+from sailenv_ros.types.colour import HALF_MOST
 
 __all__ = ["INSIDE", "PointChanges", "ShadowMaps", "with_neighbours"]
 
@@ -23,9 +24,6 @@ Maps = Sequence[NDArray[np.float16]]
 
 INSIDE = 3
 """State of points of which nothing is known: they lie inside of something."""
-
-MOST = 6e4
-"""Largest value of a light map."""
 
 FAR_M = 2.0
 """Distance that stands for all that is farther, in the kernels too [m]."""
@@ -206,7 +204,7 @@ class ShadowMaps:
         for old, new in zip(before, after, strict=True):
             depth = _flat(old).shape[1]
             lit = _flat(old)[at] + change[known, column : column + depth]
-            _flat(new)[at] = np.clip(lit, 0.0, MOST)
+            _flat(new)[at] = np.clip(lit, 0.0, HALF_MOST)
             column += depth
 
 

@@ -50,8 +50,7 @@ class BakedTextures:
             self._uploaded = composited
         table = self._state.instances
         if table is not self._table:
-            self._write(table)
-            self._write_factors(self._state.vertex_factors)
+            self._write(table, self._state.vertex_factors)
         return composited
 
     def show_alone(self, snapshot: WorldSnapshot, composited: CompositedLight) -> None:
@@ -60,8 +59,7 @@ class BakedTextures:
         self._upload(composited)
         self._upload_edges(composited.main_edges)
         self._uploaded = composited
-        self._write(self._state.around(snapshot, composited.probes))
-        self._write_factors(np.zeros(0, np.float32))
+        self._write(self._state.around(snapshot, composited.probes), np.zeros(0, np.float32))
 
     def bind(self, program: moderngl.Program) -> None:
         """Make the textures readable for a program."""
@@ -83,37 +81,34 @@ class BakedTextures:
 
     def close(self) -> None:
         """Free the textures."""
-        for texture in (
-            *(self._light_map, self._instances, self._factors),
-            *(self._edge_index, self._edge_blocks),
-        ):
+        of_instances = self._instances, self._factors
+        for texture in (self._light_map, *of_instances, self._edge_index, self._edge_blocks):
             if texture is not None:
                 texture.release()
 
-    def _write(self, table: NDArray[np.float32]) -> None:
+    def _write(self, table: NDArray[np.float32], factors: NDArray[np.float32]) -> None:
         # Four numbers a texel: an instance's lie side by side, ROW_IDS instances in a row.
-        rows = len(table) // ROW_IDS
-        if self._instances is None or self._instances.height != rows:
-            if self._instances is not None:
-                self._instances.release()
-            self._instances = self._context.texture(
-                (INSTANCE_ROW // 4 * ROW_IDS, rows), 4, dtype="f4"
-            )
-            self._instances.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        size = INSTANCE_ROW // 4 * ROW_IDS, len(table) // ROW_IDS
+        self._instances = self._numbers(self._instances, size, 4)
         self._instances.write(np.ascontiguousarray(table))
+        rows = max(-(-len(factors) // FACTORS_IN_A_ROW), 1)
+        padded = np.zeros(rows * FACTORS_IN_A_ROW, np.float32)
+        padded[: len(factors)] = factors
+        self._factors = self._numbers(self._factors, (FACTORS_IN_A_ROW, rows), 1)
+        self._factors.write(padded)
         self._table = table
 
-    def _write_factors(self, factors: NDArray[np.float32]) -> None:
-        rows = max(-(-len(factors) // FACTORS_IN_A_ROW), 1)
-        padded = np.zeros((rows, FACTORS_IN_A_ROW), np.float32)
-        padded.reshape(-1)[: len(factors)] = factors
-        if self._factors is not None and self._factors.height != rows:
-            self._factors.release()
-            self._factors = None
-        if self._factors is None:
-            self._factors = self._context.texture((FACTORS_IN_A_ROW, rows), 1, dtype="f4")
-            self._factors.filter = (moderngl.NEAREST, moderngl.NEAREST)
-        self._factors.write(padded)
+    def _numbers(
+        self, held: moderngl.Texture | None, size: tuple[int, int], components: int
+    ) -> moderngl.Texture:
+        """Return a texture of numbers of that size: the one that is held, or another."""
+        if held is not None and held.size == size:
+            return held
+        if held is not None:
+            held.release()
+        made = self._context.texture(size, components, dtype="f4")
+        made.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        return made
 
     def _upload_edges(self, edges: SunEdges | None) -> None:
         """Lay the blocks out side by side; without any, one texel says so."""

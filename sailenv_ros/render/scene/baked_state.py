@@ -63,6 +63,7 @@ class BakedState:
         self._contents: SceneContents | None = None
         self._placed: tuple[CompositedLight, SceneContents, object] | None = None
         self._poses: NDArray[np.float64] | None = None
+        self._shown: tuple[object, object] = (None, None)
         self._middles = np.zeros((0, 4))
         self._vertex_counts: dict[int, int] = {}
         self._sums: dict[int, tuple[ObjectLight, Floats, Floats]] = {}
@@ -92,9 +93,12 @@ class BakedState:
         placed = (composited, contents, snapshot.object_light)
         if self._placed == placed and np.array_equal(self._poses, poses):  # type: ignore[arg-type]
             return
-        if self._placed is None or self._placed[1].instances is not contents.instances:
+        assert contents.baked is not None
+        instances, charts = self._shown
+        self._shown = contents.instances, contents.baked.charts
+        if instances is not contents.instances:
             self._middles = _middles(contents)
-        if self._placed is None or self._placed[1] is not contents:
+        if instances is not contents.instances or charts is not contents.baked.charts:
             self._vertex_counts = _vertex_counts(contents)
         if self._placed is None or self._placed[0] is not composited:
             self._sums = {}

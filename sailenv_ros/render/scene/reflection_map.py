@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sailenv_ros.types.baked_light import ProbeGrid
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
-from sailenv_ros.types.colour import LUMINANCE
+from sailenv_ros.types.colour import HALF_MOST, LUMINANCE
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.picture_settings import PictureSettings
 
@@ -165,7 +165,7 @@ def prefilter(
             blur(radiance, directions, _lobe(roughness), blurred)
         for glint in glints:
             blurred = blurred + _blurred_glint(glint, directions, roughness)
-        layer[1:-1, 1:-1, :3] = np.minimum(blurred, 6e4)
+        layer[1:-1, 1:-1, :3] = np.minimum(blurred, HALF_MOST)
         # Beyond an edge of the square lies the same edge, mirrored about its middle.
         layer[0, 1:-1], layer[-1, 1:-1] = layer[1, -2:0:-1], layer[-2, -2:0:-1]
         layer[1:-1, 0], layer[1:-1, -1] = layer[-2:0:-1, 1], layer[-2:0:-1, -2]

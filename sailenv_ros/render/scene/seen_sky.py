@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.system.array_cache import cached_arrays, code_digest
-from sailenv_ros.types.colour import LUMINANCE
+from sailenv_ros.types.colour import HALF_MOST, LUMINANCE
 from sailenv_ros.types.digests import sky_digest
 from sailenv_ros.types.lights import Environment, SkyMap
 
@@ -46,9 +46,6 @@ a difference is fine."""
 DETAIL = 1.35
 """Fine differences are made so much stronger, in stops: a pixel of the sky is some pixels of the
 picture, and lenses are sharper."""
-
-_MOST = 6e4
-"""Radiance that half precision can hold."""
 
 BRIGHTEST = 0.85
 """Exposed luminance that no pixel passes."""
@@ -94,7 +91,7 @@ def _made(sky: SkyMap, exposure: float | None) -> NDArray[np.float16]:
     size = (FINER * wrapped.shape[1], FINER * height)
     finer = cv2.resize(wrapped, size, interpolation=cv2.INTER_CUBIC)
     kept = finer[:, FINER * around : FINER * (around + width)]
-    result: NDArray[np.float16] = np.clip(kept, 0.0, _MOST).astype(np.float16)
+    result: NDArray[np.float16] = np.clip(kept, 0.0, HALF_MOST).astype(np.float16)
     result = np.ascontiguousarray(result)
     result.flags.writeable = False
     return result
