@@ -35,8 +35,8 @@ class FoundLight:
 
     Attributes
     ----------
-    objects : dict of int to KnownLight
-        Light on objects, by instance id.
+    objects : dict of tuple to tuple of KnownLight
+        Light on what rests, by instance id and number of the part: the first and the newest.
     shadows : dict of tuple to FoundShadows
         Shadows, which nobody changes, by the places of the objects that rested at first, and then
         after each change: it counts from where shadows were found.
@@ -45,7 +45,7 @@ class FoundLight:
         these the ones after most changes.
     """
 
-    objects: dict[int, KnownLight] = field(default_factory=dict)
+    objects: dict[tuple[int, int], tuple[KnownLight, ...]] = field(default_factory=dict)
     shadows: dict[Places, FoundShadows] = field(default_factory=dict)
     asked: set[Places] = field(default_factory=set)
 

@@ -78,7 +78,7 @@ class ObjectLights:
         self._of: tuple[object, ...] = ()
         self._seen: tuple[object, tuple[bytes, bytes]] = (None, (b"", b""))
         self._lightings: dict[tuple[object, ...], ObjectLighting] = {}
-        self._still: dict[int, KnownLight] = {}
+        self._still: dict[tuple[int, int], tuple[KnownLight, ...]] = {}
         self._known: dict[tuple[int, int], KnownLight] = {}
         self._light: Mapping[int, ObjectLight] = {}
         self._sums: dict[int, tuple[tuple[KnownLight | None, ...], ObjectLight]] = {}
@@ -146,12 +146,11 @@ class ObjectLights:
             begins = not (self._still or changes) and bool(scene.baked.checksum)
             known |= self._found(asked, scene if begins else None, threads)
             self._known = known
-            # What no change counts for is so again when furniture is back.
-            self._still |= {
-                id_: one
-                for (id_, number), one in known.items()
-                if number == WHOLE and not one[0][0]
-            }
+            # What no change counts for is so again when furniture is back, or the scene begins.
+            for of_part, one in known.items():
+                (of_changes, quality, _), kept = one[0], self._still.get(of_part, ())
+                if quality is not QUICK and not of_changes and all(one is not k for k in kept):
+                    self._still[of_part] = *kept[:1], one
             self._sums = {id_: self._summed(known, id_) for id_, number in known if number == WHOLE}
             self._light = {id_: light for id_, (_, light) in self._sums.items()}
         return self._light
@@ -172,9 +171,7 @@ class ObjectLights:
         self, id_: int, number: int, moved: tuple[object, ...], part: _Part
     ) -> KnownLight | None:
         """Return what is known already of a part of the light on an object."""
-        before = [self._known.get((id_, number))]
-        if number == WHOLE:
-            before.append(self._still.get(id_))
+        before = self._known.get((id_, number)), *self._still.get((id_, number), ())
         return next((one for one in before if one and _is_of(one, moved, part)), None)
 
     def _found(

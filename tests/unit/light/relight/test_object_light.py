@@ -377,6 +377,24 @@ def test_light_at_vertices_is_found_where_something_large_changes(
     assert_same(back[3], first[3])
 
 
+def test_a_scene_that_begins_again_asks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither as it began nor as it came to rest, also if one of these came twice between."""
+    asked = asked_qualities(monkeypatch)
+    hollow = model_of(bowl(12), base_colour=BLACK)
+    snapshot = room((hollow, IN_THE_AIR), (BOX, Pose((-1.1, 0.0, 1.0))), environment=WHITE_SKY)
+    scene, later = scene_of(snapshot), moved(snapshot, 2, -1.0)
+    expected = [ObjectLights().update(one, scene, (), threads=1) for one in (snapshot, later)]
+    assert AT_VERTICES in asked
+    asked.clear()
+    for places in (snapshot, later), (snapshot,), (snapshot, later):
+        lights = ObjectLights()
+        for place, light in zip(places, expected, strict=False):
+            shown = lights.update(place, scene, (), threads=1)
+            for id_, one in light.items():
+                assert_same(shown[id_], one)
+    assert not asked
+
+
 def test_creeping_by_less_than_can_be_seen_changes_nothing() -> None:
     """Things that come to rest move for seconds by a few hundredths of a millimetre."""
     snapshot = room((BOX, IN_THE_AIR))
