@@ -219,7 +219,8 @@ def board(roughness: float, grey: float = 0.5) -> Thing:
 
 
 @pytest.mark.parametrize(
-    ("roughness", "grey"), [(0.1, 0.5), (0.2, 0.5), (0.32, 0.5), (0.4, 0.5), (0.355, 0.02)]
+    ("roughness", "grey"),
+    [(0.1, 0.5), (0.2, 0.5), (0.32, 0.5), (0.4, 0.5), (0.355, 0.02), (0.5, 0.5), (0.58, 0.02)],
 )
 def test_a_board_mirrors_the_face_of_an_area_light(
     native: NativeRenderer, roughness: float, grey: float
@@ -234,6 +235,26 @@ def test_a_board_mirrors_the_face_of_an_area_light(
     card = Thing(CARD, Pose((2.7, 0.8, 0.0)))  # before the panel, but not before the eye
     dark = picture(native, board(roughness, grey), card, width=960, lights=(PANEL,))
     assert mean_at(dark, 0.25) < 0.1 * mean_at(rgb, 0.25)
+
+
+def test_a_rough_board_mirrors_an_area_light_once(native: NativeRenderer) -> None:
+    """By its lobe, though the light around the board has the panel's, too."""
+    thing, light = board(0.55, 0.0), replace(PANEL, intensity=4.0)
+    room = baked({1: chart(BACK_WALL.model, BACK_WALL.pose)}, [layer(light)], layer(None))
+    scene = snapshot_of([BACK_WALL, thing], lights=(light,), environment=BLACK, baked=room)
+    terms = np.zeros((2, LIGHT_TERMS), np.float32)
+    # Irradiance / pi in front of the panel's middle, a patch of which sends 4 cos² / pi distance².
+    steps = (np.arange(50) + 0.5) / 100.0 - 0.25
+    distance2 = 0.6**2 + steps**2 + (steps[:, None] + 0.3) ** 2
+    terms[0, 0] = (4.0 / np.pi * 0.6**2 / distance2**2).mean() * 0.5**2
+    lit = ObjectLight(
+        bounced=np.zeros((2, LIGHT_TERMS, 3), np.float32), direct=terms, axes=np.eye(3, dtype="f4")
+    )
+    request = RenderRequest(replace(scene, object_light={2: lit}), camera(960), ("rgb",))
+    rgb = native.render(request).views["rgb"]
+    low, high = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
+    expected = 0.04 * 4.0 * lobe_share(low, high, 0.2, 0.55)
+    assert mean_at(rgb, 0.2) == pytest.approx(expected, rel=0.15)
 
 
 @pytest.mark.parametrize("roughness", [0.1, 0.25, 0.4])

@@ -105,15 +105,16 @@ LobeOnFace lobe_on_face(const RayLight& light, Vec3x8 point, Vec3x8 along, Vec3x
     return r;
 }
 
-f8 share_of_wide_lobe(const RayLight& light, const LobeOnFace& met, Vec3x8 point, Vec3x8 along,
-                      Vec3x8 normal, f8 roughness, f8 head_on) {
+FaceLight light_of_face(const RayLight& light, const LobeOnFace& met, Vec3x8 point, Vec3x8 along,
+                        Vec3x8 normal, f8 roughness, f8 head_on) {
     const f8 width = min8(met.across.width, met.up.width);
     const f8 wide = smoothstep(NARROW, WIDE, width);
-    if (!any(wide > 0.0f)) return met.share;
+    const i8 mirrors_around = roughness > MIRRORS_ROOM;
+    if (!any((wide > 0.0f) | mirrors_around)) return {met.share, splat(0.0f)};
     const float quarter = 0.25f * area_of(light);
     const f8 square = roughness * roughness, a2 = square * square;
     const f8 nv = min8(abs8(dot(normal, along)) + 1e-4f, splat(1.0f));
-    f8 sent = splat(0.0f);
+    f8 sent = splat(0.0f), arrives = splat(0.0f);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             const Vec3x8 to = splat(place_on_face(light, PLACES[i], PLACES[j])) - point;
@@ -128,13 +129,16 @@ f8 share_of_wide_lobe(const RayLight& light, const LobeOnFace& met, Vec3x8 point
             const f8 seen =
                 lamp_falloff(light.lamp, distance2, -dot(towards, light.lamp.direction));
             const f8 lobe = nl > 0.0f ? microfacet_lobe(a2, nl, nv, nh) * nl : splat(0.0f);
-            sent = sent + (WEIGHTS[i] * WEIGHTS[j] * quarter) * (fresnel * lobe * seen);
+            const float weight = WEIGHTS[i] * WEIGHTS[j] * quarter;
+            sent = sent + weight * (fresnel * lobe * seen);
+            arrives = arrives + (weight / PI) * (nl * seen);
         }
     }
     const Mirroring term = mirroring(roughness, nv);
     const f8 even = head_on * term.x + term.y;
     const f8 share = clamp8(sent / max8(even, splat(1e-3f)), 0.0f, 1.0f);
-    return met.share + (share - met.share) * wide;
+    return {met.share + (share - met.share) * wide,
+            mirrors_around ? min8(arrives, splat(1.0f)) : splat(0.0f)};
 }
 
 Vec3x8 mirrored_faces(const Light& light, Vec3x8 point, Vec3x8 along, Vec3x8 normal, f8 roughness) {

@@ -28,10 +28,16 @@ LobeOnFace lobe_on_face(const RayLight& light, Vec3x8 point, Vec3x8 along, Vec3x
 // Radiance that surfaces mirror of all faces, as if nothing were in the way.
 Vec3x8 mirrored_faces(const Light& light, Vec3x8 point, Vec3x8 along, Vec3x8 normal, f8 roughness);
 
-// The share of a lobe that meets a face, where the lobe may be as wide as the face or wider: then
-// by points of the face. `head_on` is the luminance of the surface's reflectance head-on.
-f8 share_of_wide_lobe(const RayLight& light, const LobeOnFace& met, Vec3x8 point, Vec3x8 along,
-                      Vec3x8 normal, f8 roughness, f8 head_on);
+// What eight surfaces have of the face of an area light of radiance 1.
+struct FaceLight {
+    f8 share;   // of the lobe that meets it
+    f8 around;  // irradiance / pi; of surfaces that mirror the light around alone
+};
+
+// The same where the lobe may be as wide as the face or wider: then by points of the face.
+// `head_on` is the luminance of the surface's reflectance head-on.
+FaceLight light_of_face(const RayLight& light, const LobeOnFace& met, Vec3x8 point, Vec3x8 along,
+                        Vec3x8 normal, f8 roughness, f8 head_on);
 
 // The point of a face at a place from -1 to 1 along each axis.
 vec3 place_on_face(const RayLight& light, float x, float y);

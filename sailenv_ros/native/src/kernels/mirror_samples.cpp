@@ -238,12 +238,13 @@ void look_at_faces(const Shading& s, const Chunk& c, MirrorSample* const* sample
             const f8 roughness = load(c.roughness + i);
             const LobeOnFace met = lobe_on_face(l, point, along, normal, roughness);
             const f8 head_on = luminance(reflectance_head_on(c.base.at(i), load(c.metallic + i)));
-            const f8 share = share_of_wide_lobe(l, met, point, along, normal, roughness, head_on);
+            const FaceLight one = light_of_face(l, met, point, along, normal, roughness, head_on);
             for (int32_t k = i; k < std::min(i + 8, c.count); k++) {
-                const float bright = luminance(radiance) * share[k - i];
+                const float bright = luminance(radiance) * one.share[k - i];
                 if (!(bright > least)) continue;
                 MirrorSample& own = *samples[k];
-                own.faces = own.faces + radiance * share[k - i];
+                own.faces = own.faces + radiance * one.share[k - i];
+                own.around = own.around + radiance * one.around[k - i];
                 own.faces_met += bright;
                 if (sees_face(s, l, own, met, k - i)) own.faces_seen += bright;
             }

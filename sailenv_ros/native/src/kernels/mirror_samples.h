@@ -23,9 +23,9 @@ struct MirrorSample {
     vec3 difference = {0.0f, 0.0f, 0.0f};
     float difference_weight = 0.0f;
     vec3 correction = {0.0f, 0.0f, 0.0f};
-    // Radiance of the faces of area lights that it mirrors if nothing is in the way; luminance of
-    // those it sees, and of all; the share that samples around see.
-    vec3 faces = {0.0f, 0.0f, 0.0f};
+    // Radiance of the faces of area lights that it mirrors if nothing is in the way, and irradiance
+    // / pi by them; luminance of those it sees, and of all; the share that samples around see.
+    vec3 faces = {0.0f, 0.0f, 0.0f}, around = {0.0f, 0.0f, 0.0f};
     float faces_seen = 0.0f, faces_met = 0.0f, faces_share = 1.0f;
 };
 

@@ -45,7 +45,7 @@ void add_sample(const MirrorSample& sample, const Chunk& c, int32_t i, i8 wanted
 // they know of area lights.
 struct Interpolated {
     Vec3x8 correction = splat(vec3(0.0f, 0.0f, 0.0f));
-    Vec3x8 faces = splat(vec3(0.0f, 0.0f, 0.0f));
+    Vec3x8 faces = splat(vec3(0.0f, 0.0f, 0.0f)), around = splat(vec3(0.0f, 0.0f, 0.0f));
     f8 faces_share = splat(0.0f), faces_met = splat(0.0f), weight = splat(0.0f);
 
     // Of a sample in whose square's middle `near` would be highest.
@@ -57,6 +57,7 @@ struct Interpolated {
         const f8 counts = own ? near * turned : splat(0.0f);
         correction = correction + counts * sample.correction;
         faces = faces + counts * sample.faces;
+        around = around + counts * sample.around;
         faces_share = faces_share + counts * sample.faces_share;
         faces_met = faces_met + counts * sample.faces_met;
         weight = weight + counts;
@@ -135,9 +136,13 @@ void correct_mirrored(const Shading& s, const int32_t* x, const int32_t* y, Chun
                             (t.weight + ENOUGH_WEIGHT);
             const Vec3x8 corrected =
                 c.mirrored.at(i) + part * (t.correction * scale + c.darkened.at(i));
-            c.mirrored.set(i, max(corrected, 0.0f));
             const f8 seen = t.weight > 0.0f ? t.faces_share * scale : load(c.open + i);
-            const f8 kept = (1.0f - share_mirrored_around(roughness)) * seen;
+            // Where rough surfaces mirror the light around, that of faces counts by their lobes.
+            const f8 even = share_mirrored_around(roughness) * (1.0f - share_of_room(c, i));
+            const f8 apart = even * (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness)) * seen;
+            c.mirrored.set(i, max(corrected - t.around * (scale * apart), 0.0f));
+            const f8 plain = (1.0f - share_mirrored_around(roughness)) * seen;
+            const f8 kept = (1.0f - even) * seen + apart;
             const i8 smooth = roughness < ROUGH, sampled = t.weight > 0.0f;
             faces = where(wanted & sampled, t.faces * (scale * kept), faces);
             // Highlights of what is smooth have edges; where it is curved, they may lie between
@@ -150,7 +155,7 @@ void correct_mirrored(const Shading& s, const int32_t* x, const int32_t* y, Chun
                 const f8 within = sqrt8(roughness * roughness + 0.5f * turned);
                 const Vec3x8 all = mirrored_faces(
                     *s.light, c.point.at(i), ray * inverse_length(ray), c.normal.at(i), within);
-                faces = where(own, all * kept, faces);
+                faces = where(own, all * plain, faces);
             }
         }
         c.faces.set(i, faces);
