@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -385,6 +386,46 @@ def test_a_thin_rod_mirrors_what_stands_beside_it(native: NativeRenderer, roll_d
     assert shown_px < 0.6
     assert rows.mean() == pytest.approx(bright * shown_px, rel=0.2)
     assert (rows > 0.25 * bright * shown_px).mean() > 0.9
+
+
+def post_mesh(width_m: float, edge_m: float, length_m: float) -> Mesh:
+    """An upright board that faces -x, with a rounded edge on its left."""
+    half, round_ = width_m / 2.0, np.sqrt(0.5)
+    sides = [(0.0, -half, (-1, 0, 0)), (0.0, half, (-1, 0, 0))]
+    sides.append((edge_m, half + edge_m, (-round_, round_, 0)))
+    ends = [(-0.5, 0), (0.5, 1)]
+    return mesh_of(
+        np.array([(x, y, z * length_m) for z, _ in ends for x, y, _ in sides]),
+        np.array([normal for _ in ends for *_, normal in sides]),
+        np.zeros((6, 2)),
+        np.array([(0, 3, 1), (1, 3, 4), (1, 4, 2), (2, 4, 5)]),
+    )
+
+
+@pytest.mark.parametrize(("width_m", "roll_deg"), [(0.024, 0.0), (0.018, 4.0), (0.018, 8.0)])
+def test_a_narrow_post_has_no_dashes(
+    native: NativeRenderer, width_m: float, roll_deg: float
+) -> None:
+    """Of rough metal, some pixels wide: everywhere half of its lobe meets a bright wall."""
+    look = {"base_colour": (1.0, 1.0, 1.0, 1.0), "metallic": 1.0, "roughness": 0.24}
+    post = Thing(
+        model_of(post_mesh(width_m, 0.003, 5.0), **look),
+        Pose.from_rpy_deg((3.0, 0.0, 0.0), (roll_deg, 0.0, 0.0)),
+    )
+    glow = model_of(box_mesh((0.1, 4.0, 9.0)), base_colour=(0, 0, 0, 1), emission=(0.4,) * 3)
+    wall = Thing(glow, Pose((-1.0, 2.0, 0.0)))
+    matt = model_of(wall_mesh(8.0, 8.0), base_colour=(0.0, 0.0, 0.0, 1.0), roughness=1.0)
+    back = Thing(matt, BACK_WALL.pose)
+    light = baked({1: chart(back.model, back.pose)}, [], layer(None))
+    scene = snapshot_of([back, post, wall], lights=(), environment=BLACK, baked=light)
+    request = RenderRequest(scene, camera(960), ("rgb", "instance", "normals"))
+    seen = native.render(request).views
+    face = (seen["instance"] == 2) & (seen["normals"][..., 2] < -0.9999)
+    inner = cv2.erode(face.astype(np.uint8), np.ones((1, 3))) > 0
+    rows = zip(seen["rgb"], inner, strict=True)
+    along = np.array([linear(rgb)[own, 1].mean() for rgb, own in rows])[40:]
+    smooth = np.convolve(along, np.ones(31) / 31, "valid")
+    assert np.std(along[15:-15] / smooth) < 0.15
 
 
 def test_frames_do_not_depend_on_threads_or_the_instruction_set() -> None:

@@ -34,6 +34,8 @@ constexpr float EVEN_SHARE = 0.1f;
 // wider it is; those around share what these meet. Where much is mirrored sharply, each pixel has
 // its own.
 constexpr int32_t SHARED_RAYS = 4, OWN_RAYS = 2;
+// Of what is too narrow for others beside to share.
+constexpr int32_t NARROW_RAYS = 8;
 constexpr float PART = 0.85f;  // of the lobe: a ray alone may not be of the steepest facets
 // Share that counts of what the row above met, at most, and how far from there a third of it is
 // left.
@@ -163,10 +165,22 @@ bool one_beside_does(const Chunk& c, const TracedPixels& pixels, const TracedRow
                      int32_t i) {
     for (int32_t other = i - BESIDE; other <= i + BESIDE; other++) {
         if (above != nullptr && shares(c, i, *above, other)) return true;
-        if (other < 0 || other >= i || pixels.ray_count[other] == 0) continue;
+        // Those that look for themselves alone, as on a round edge, have few rays.
+        if (other < 0 || other >= i || pixels.ray_count[other] == 0 || pixels.step[other] <= 2) {
+            continue;
+        }
         if (is_alike(c.id[i], c.normal, i, c.id[other], c.normal, other)) return true;
     }
     return false;
+}
+
+// Whether a pixel lies on something so narrow that none of those that look is beside it.
+bool is_narrow(const Chunk& c, int32_t i, int32_t step) {
+    const auto is_of_it = [&](int32_t other) {
+        return other < 0 || other >= c.count ||
+               is_alike(c.id[i], c.normal, i, c.id[other], c.normal, other);
+    };
+    return !is_of_it(i - step) && !is_of_it(i + step);
 }
 
 // Says how many rays each pixel has; `last` is the nearest row above that has some.
@@ -180,7 +194,8 @@ void count_rays(const Chunk& c, bool of_row, const TracedRow* last, TracedPixels
         if (!of_row || pixels.step[i] == 1) continue;
         const bool flat = pixels.angle[i] < FLAT_PLANE || pixels.step[i] > 2;
         if (much && flat) {
-            pixels.ray_count[i] = SHARED_RAYS;
+            const bool narrow = pixels.step[i] > 2 && is_narrow(c, i, pixels.step[i]);
+            pixels.ray_count[i] = narrow ? NARROW_RAYS : SHARED_RAYS;
         } else if (much || pixels.step[i] > 2) {
             pixels.ray_count[i] = OWN_RAYS;
         }
@@ -342,17 +357,29 @@ Met met_around(const Chunk& c, const TracedPixels& pixels, const TracedRow* besi
     return met;
 }
 
+// The pixel of the row above whose rays go on in one of a row, or -1: the one above it or, where
+// something narrow slants, the nearest beside that. Of those, each so many look.
+int32_t one_above(const Chunk& c, const TracedRow& last, int32_t i, int32_t step) {
+    for (int32_t away = 0; away <= step; away++) {
+        if (shares(c, i, last, i - away)) return i - away;
+        if (shares(c, i, last, i + away)) return i + away;
+    }
+    return -1;
+}
+
 // Adds to what few pixels met what those above them did, less and less of it from row to row.
 void add_rows_above(const Chunk& c, const TracedRow& last, TracedPixels& pixels) {
     for (int32_t i = 0; i < c.count; i++) {
         const bool few = pixels.step[i] > 2 || pixels.angle[i] > BENT;
-        if (pixels.ray_count[i] == 0 || !few || !shares(c, i, last, i)) continue;
+        if (pixels.ray_count[i] == 0 || !few) continue;
+        const int32_t above = one_above(c, last, i, pixels.step[i]);
+        if (above < 0) continue;
         const vec3 sum = vector_at(pixels.row.sum, i);
-        const vec3 apart = vector_at(pixels.row.point, i) - vector_at(last.point, i);
+        const vec3 apart = vector_at(pixels.row.point, i) - vector_at(last.point, above);
         const float away = std::sqrt(dot(apart, apart)) * (1.0f / KEPT_M);
         const float kept = min(KEPT_SHARE, 1.0f / (1.0f + away + 0.5f * away * away));
-        put(pixels.row.sum, i, sum + vector_at(last.sum, i) * kept);
-        pixels.row.weight[i] += kept * last.weight[i];
+        put(pixels.row.sum, i, sum + vector_at(last.sum, above) * kept);
+        pixels.row.weight[i] += kept * last.weight[above];
     }
 }
 
