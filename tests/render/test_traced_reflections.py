@@ -19,6 +19,7 @@ from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
 from sailenv_ros.types.model import Mesh
 from sailenv_ros.types.picture_settings import PictureSettings
+from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.baked import baked, chart, layer
 from tests.support.picture import linear
 from tests.support.tiny_scenes import (
@@ -65,6 +66,14 @@ def picture(
     request = RenderRequest(scene, camera(width), ("rgb",))
     rgb: NDArray[np.uint8] = native.render(request).views["rgb"]
     return rgb
+
+
+def before_black(*things: Thing) -> WorldSnapshot:
+    """In a dark baked room whose far wall mirrors nothing."""
+    matt = model_of(wall_mesh(8.0, 8.0), base_colour=(0.0, 0.0, 0.0, 1.0), roughness=1.0)
+    back = Thing(matt, BACK_WALL.pose)
+    light = baked({1: chart(back.model, back.pose)}, [], layer(None))
+    return snapshot_of([back, *things], lights=(), environment=BLACK, baked=light)
 
 
 def place_of(point: tuple[float, float, float]) -> tuple[int, int]:
@@ -188,6 +197,8 @@ PANEL = Light(
     name="panel", type="area", position_m=(2.4, 0.5, 0.0), direction=(1.0, 0.0, 0.0),
     width_m=0.5, height_m=0.5, intensity=10.0,
 )  # fmt: skip
+PANEL_BOX = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
+"""Two corners of its face."""
 
 
 @pytest.mark.parametrize("distance_m", [0.2, 0.5])
@@ -206,8 +217,7 @@ def test_rough_metal_mirrors_the_face_of_an_area_light(native: NativeRenderer) -
     """It has no body; what stands before it hides it."""
     light = replace(PANEL, intensity=0.3)
     seen = mean_at(picture(native, ROUGH_METAL, width=960, lights=(light,)), 0.2)
-    low, high = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
-    assert seen == pytest.approx(lobe_share(low, high, 0.2) * 0.3 * TINT[0], rel=0.2)
+    assert seen == pytest.approx(lobe_share(*PANEL_BOX, 0.2) * 0.3 * TINT[0], rel=0.2)
     card = Thing(CARD, Pose((2.7, 0.8, 0.0)))  # before the panel, but not before the eye
     assert mean_at(picture(native, ROUGH_METAL, card, width=960, lights=(light,)), 0.2) < 0.01
 
@@ -228,9 +238,8 @@ def test_a_board_mirrors_the_face_of_an_area_light(
 ) -> None:
     """Four hundredths of what metal does, at its own place and no other; not what is hidden."""
     rgb = picture(native, board(roughness, grey), width=960, lights=(PANEL,))
-    low, high = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
     for y in (0.16, 0.25):
-        expected = 0.04 * 10.0 * lobe_share(low, high, y, roughness)
+        expected = 0.04 * 10.0 * lobe_share(*PANEL_BOX, y, roughness)
         assert mean_at(rgb, y) == pytest.approx(expected, rel=0.2, abs=0.004)
     assert mean_at(rgb, -0.6) < 0.01
     card = Thing(CARD, Pose((2.7, 0.8, 0.0)))  # before the panel, but not before the eye
@@ -253,8 +262,7 @@ def test_a_rough_board_mirrors_an_area_light_once(native: NativeRenderer) -> Non
     )
     request = RenderRequest(replace(scene, object_light={2: lit}), camera(960), ("rgb",))
     rgb = native.render(request).views["rgb"]
-    low, high = np.array((2.3999, 0.25, -0.25)), np.array((2.4001, 0.75, 0.25))
-    expected = 0.04 * 4.0 * lobe_share(low, high, 0.2, 0.55)
+    expected = 0.04 * 4.0 * lobe_share(*PANEL_BOX, 0.2, 0.55)
     assert mean_at(rgb, 0.2) == pytest.approx(expected, rel=0.15)
 
 
@@ -371,11 +379,7 @@ def test_a_thin_rod_mirrors_what_stands_beside_it(native: NativeRenderer, roll_d
         ),
         Pose((1.0, away_m + 0.05, 0.0)),
     )
-    # What lies behind mirrors nothing.
-    matt = model_of(wall_mesh(8.0, 8.0), base_colour=(0.0, 0.0, 0.0, 1.0), roughness=1.0)
-    back = Thing(matt, BACK_WALL.pose)
-    light = baked({1: chart(back.model, back.pose)}, [], layer(None))
-    scene = snapshot_of([back, rod, wall], lights=(), environment=BLACK, baked=light)
+    scene = before_black(rod, wall)
     seen = replace(camera(), picture=PictureSettings(occlusion_strength=0.0, tone_curve="linear"))
     rgb = native.render(RenderRequest(scene, seen, ("rgb",))).views["rgb"]
     middle = slice(seen.intrinsics.width // 2 - 20, seen.intrinsics.width // 2 + 20)
@@ -414,10 +418,7 @@ def test_a_narrow_post_has_no_dashes(
     )
     glow = model_of(box_mesh((0.1, 4.0, 9.0)), base_colour=(0, 0, 0, 1), emission=(0.4,) * 3)
     wall = Thing(glow, Pose((-1.0, 2.0, 0.0)))
-    matt = model_of(wall_mesh(8.0, 8.0), base_colour=(0.0, 0.0, 0.0, 1.0), roughness=1.0)
-    back = Thing(matt, BACK_WALL.pose)
-    light = baked({1: chart(back.model, back.pose)}, [], layer(None))
-    scene = snapshot_of([back, post, wall], lights=(), environment=BLACK, baked=light)
+    scene = before_black(post, wall)
     request = RenderRequest(scene, camera(960), ("rgb", "instance", "normals"))
     seen = native.render(request).views
     face = (seen["instance"] == 2) & (seen["normals"][..., 2] < -0.9999)

@@ -148,7 +148,8 @@ class ObjectLights:
             self._known = known
             # What no change counts for is so again when furniture is back, or the scene begins.
             for of_part, one in known.items():
-                (of_changes, quality, _), kept = one[0], self._still.get(of_part, ())
+                of_changes, quality, _ = one[0]
+                kept = self._still.get(of_part, ())
                 if quality is not QUICK and not of_changes and all(one is not k for k in kept):
                     self._still[of_part] = *kept[:1], one
             self._sums = {id_: self._summed(known, id_) for id_, number in known if number == WHOLE}

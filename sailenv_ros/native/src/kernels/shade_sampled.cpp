@@ -131,17 +131,17 @@ void correct_mirrored(const Shading& s, const int32_t* x, const int32_t* y, Chun
             // Where normals turn, mirrored rays turn twice as far.
             const Vec3x8 bend = c.bend.at(i);
             const f8 turned = sqrt8(dot(bend, bend));
-            const f8 part = (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness)) *
-                            (1.0f - smoothstep(FLAT, BENT, 2.0f * turned)) * t.weight /
+            const f8 told = 1.0f - smoothstep(ROUGHER, ROUGHEST, roughness);
+            const f8 part = told * (1.0f - smoothstep(FLAT, BENT, 2.0f * turned)) * t.weight /
                             (t.weight + ENOUGH_WEIGHT);
             const Vec3x8 corrected =
                 c.mirrored.at(i) + part * (t.correction * scale + c.darkened.at(i));
             const f8 seen = t.weight > 0.0f ? t.faces_share * scale : load(c.open + i);
             // Where rough surfaces mirror the light around, that of faces counts by their lobes.
-            const f8 even = share_mirrored_around(roughness) * (1.0f - share_of_room(c, i));
-            const f8 apart = even * (1.0f - smoothstep(ROUGHER, ROUGHEST, roughness)) * seen;
+            const f8 rough = share_mirrored_around(roughness);
+            const f8 even = rough * (1.0f - share_of_room(c, i));
+            const f8 apart = even * told * seen;
             c.mirrored.set(i, max(corrected - t.around * (scale * apart), 0.0f));
-            const f8 plain = (1.0f - share_mirrored_around(roughness)) * seen;
             const f8 kept = (1.0f - even) * seen + apart;
             const i8 smooth = roughness < ROUGH, sampled = t.weight > 0.0f;
             faces = where(wanted & sampled, t.faces * (scale * kept), faces);
@@ -155,7 +155,7 @@ void correct_mirrored(const Shading& s, const int32_t* x, const int32_t* y, Chun
                 const f8 within = sqrt8(roughness * roughness + 0.5f * turned);
                 const Vec3x8 all = mirrored_faces(
                     *s.light, c.point.at(i), ray * inverse_length(ray), c.normal.at(i), within);
-                faces = where(own, all * plain, faces);
+                faces = where(own, all * ((1.0f - rough) * seen), faces);
             }
         }
         c.faces.set(i, faces);
