@@ -36,7 +36,8 @@ RAY_INSTANCE = structure(
 
 RAY_SCENE = structure(
     ("nodes_at order_at resting_at changed_at glass_at passes_at sky_at patches_at", ADDRESS),
-    ("before_at after_at", ADDRESS),
+    ("before_at after_at emitters_at", ADDRESS),
+    ("emitter_count", "<i8"),
     ("changed_count patch_count resting_count", "<i8"),
     ("sky_height sky_width height width channels padding", "<i4"),
 )

@@ -18,7 +18,7 @@ from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.rays.static_geometry import StaticGeometry
 from sailenv_ros.types.lights import LAMP_TYPES, Light
 
-__all__ = ["MOST_EMITTERS", "close_to_lamps", "emitters_of"]
+__all__ = ["MOST_EMITTERS", "apart", "close_to_lamps", "emitters_of"]
 
 Floats = NDArray[np.float32]
 
@@ -35,6 +35,9 @@ MOST_CELLS = 100
 
 LEAST_SHARE = 0.002
 """Least power of an emitter that is sampled, as a share of the strongest one's."""
+
+INSIDE = 0.25
+"""Share of its radius that an emitter lies in a larger one with, to be a part of it."""
 
 LEVELS = 30.0, 300.0, 3000.0
 """Surfaces around a lamp are emitters where at least so many times as much light arrives as at the
@@ -71,6 +74,19 @@ def emitters_of(
     found.sort(key=lambda one: -one[0])
     chosen = [ball for power, ball in found if power >= LEAST_SHARE * found[0][0]]
     return np.array(chosen[:MOST_EMITTERS], np.float32).reshape(-1, 4)
+
+
+def apart(emitters: Floats) -> Floats:
+    """Return (E, 4) float32: emitters without those that lie in a larger one, or nearly so.
+
+    One cone does for a bulb and its shade, as long as few rays are cast into it.
+    """
+    kept: list[Floats] = []
+    for ball in emitters[np.argsort(-emitters[:, 3], kind="stable")]:
+        within = (np.linalg.norm(one[:3] - ball[:3]) + INSIDE * ball[3] <= one[3] for one in kept)
+        if not any(within):
+            kept.append(ball)
+    return np.array(kept, np.float32).reshape(-1, 4)
 
 
 def _groups(positions: NDArray[np.float64]) -> list[NDArray[np.intp]]:

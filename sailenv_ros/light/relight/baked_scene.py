@@ -6,7 +6,7 @@ moves first. Knows no change.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -99,6 +99,8 @@ class BakedScene:
         What shades of lamps emit, for white light of intensity 1, by the layer of that light.
     sent : (P, C) float32
         What patches send out by these; see `radiance`.
+    emitters : (E, 4) float32
+        Small things that shine, as they stood; see `emitters_of`.
     brightest : float
         Bounced light of all layers that nine patches of ten do not exceed.
     materials : tuple of Material
@@ -194,9 +196,9 @@ class BakedScene:
         return np.ascontiguousarray(radiance.reshape(len(direct), -1), np.float32)
 
     def _lay_out(
-        self, geometry: StaticGeometry, threads: int, lit_by: Mapping[int, Iterable[str]]
+        self, geometry: StaticGeometry, threads: int, lit_by: Mapping[int, Sequence[str]]
     ) -> None:
-        texels = baked_texels(self.baked, geometry, max(threads, 1))
+        texels = baked_texels(self.baked, geometry, lit_by, max(threads, 1))
         ids = np.array([instance.id for instance in geometry.instances], np.int32)
         self.places, self.positions, self.normals = texels.places, texels.positions, texels.normals
         self.owners = ids[geometry.owner[texels.triangle]]
@@ -216,6 +218,7 @@ class BakedScene:
             if name in layer_of
         }
         self.irradiance, self.direct = texels.irradiance, texels.direct
+        self.emitters = texels.emitters
         self.sent = self.radiance(self.irradiance, self.direct)
         self.brightest = float(np.percentile(self.irradiance.sum(axis=1), 90))
 

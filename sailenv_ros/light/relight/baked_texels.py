@@ -5,6 +5,7 @@ Rasterised again from the charts; for light that was read from disk the arrays a
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -12,8 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.bounces import patches_of
+from sailenv_ros.light.bake.emitters import apart, close_to_lamps, emitters_of
 from sailenv_ros.light.bake.facing import lit_texels
+from sailenv_ros.light.bake.lamp_glow import glows_of
 from sailenv_ros.light.bake.layout import Layout
+from sailenv_ros.light.bake.reflectance import albedo_of, emission_of
 from sailenv_ros.native.library import native_library
 from sailenv_ros.rays.light_rays import RayScene
 from sailenv_ros.rays.static_geometry import StaticGeometry
@@ -45,6 +49,8 @@ class BakedTexels:
         Means of the layers' bounced light, the three colours of each layer in turn.
     direct : (P, L) float32
         Means of the layers' direct light.
+    emitters : (E, 4) float32
+        Small things that shine, apart from each other; see `emitters_of`.
     """
 
     places: NDArray[np.int32]
@@ -55,19 +61,33 @@ class BakedTexels:
     chosen: NDArray[np.int64]
     irradiance: Floats
     direct: Floats
+    emitters: Floats
 
 
-def baked_texels(baked: BakedLight, geometry: StaticGeometry, threads: int) -> BakedTexels:
-    """Return the texels of a bake; its geometry must be as it was baked."""
+def baked_texels(
+    baked: BakedLight,
+    geometry: StaticGeometry,
+    lit_by: Mapping[int, Sequence[str]],
+    threads: int,
+) -> BakedTexels:
+    """Return the texels of a bake.
+
+    Parameters
+    ----------
+    geometry : StaticGeometry
+        As it was baked.
+    lit_by : mapping of int to sequence of str
+        Names of the lights that are in an instance, by its id.
+    """
 
     def make() -> dict[str, NDArray[Any]]:
-        made = _laid_out(baked, geometry, threads)
+        made = _laid_out(baked, geometry, lit_by, threads)
         return {field.name: getattr(made, field.name) for field in fields(made)}
 
     if not baked.checksum:
         return BakedTexels(**make())
     ids = (instance.id for instance in geometry.instances)
-    key = baked.checksum, native_library().digest, *ids
+    key = baked.checksum, native_library().digest, *ids, str(sorted(lit_by.items()))
     code = code_digest("light/bake", "light/relight", "native", "rays", "types")
     return BakedTexels(**cached_arrays("texels", key, make, code=code))
 
@@ -78,7 +98,12 @@ def patch_means(of_texel: NDArray[np.int32], values: Floats, size: Floats) -> Fl
     return (sums / size).astype(np.float32)
 
 
-def _laid_out(baked: BakedLight, geometry: StaticGeometry, threads: int) -> BakedTexels:
+def _laid_out(
+    baked: BakedLight,
+    geometry: StaticGeometry,
+    lit_by: Mapping[int, Sequence[str]],
+    threads: int,
+) -> BakedTexels:
     side = len(baked.layers[0].direct)
     layout = Layout(side=side, charts={}, places=_corners(baked, geometry, side))
     texels = lit_texels(geometry, RayScene(geometry), layout, threads)
@@ -89,6 +114,12 @@ def _laid_out(baked: BakedLight, geometry: StaticGeometry, threads: int) -> Bake
     def means(light: NDArray[np.float16]) -> Floats:
         return patch_means(patches.of_texel, light[places].astype(np.float32), size)
 
+    lights = [layer.light for layer in baked.layers if layer.light is not None]
+    shining = [
+        emission_of(geometry, layout, texels),
+        *glows_of(geometry, texels.triangle, lit_by).values(),
+        *close_to_lamps(lights, texels, albedo_of(geometry, layout, texels)),
+    ]
     bounced = [layer.bounced.reshape(-1, 3) for layer in baked.layers]
     return BakedTexels(
         places=places,
@@ -99,6 +130,7 @@ def _laid_out(baked: BakedLight, geometry: StaticGeometry, threads: int) -> Bake
         chosen=patches.middles(texels),
         irradiance=np.stack([means(colour) for light in bounced for colour in light.T], axis=1),
         direct=np.stack([means(layer.direct.reshape(-1)) for layer in baked.layers], axis=1),
+        emitters=apart(emitters_of(geometry, texels, shining)),
     )
 
 

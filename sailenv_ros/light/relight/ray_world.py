@@ -100,6 +100,8 @@ def ray_world(
         patches_at=address(scene.patches.of_map),
         before_at=address(before),
         after_at=address(after),
+        emitters_at=address(scene.emitters),
+        emitter_count=len(scene.emitters),
         changed_count=len(changed_rows),
         patch_count=len(before),
         resting_count=len(rows),

@@ -46,12 +46,6 @@ struct SkyWindows {
     int64_t height, width, pane_count;
 };
 
-// Balls around small things that shine; see bake/emitters.py.
-struct Emitters {
-    const float* balls;  // (count, 4): middle and radius
-    int64_t count;
-};
-
 // Rays that leave some points, in a list.
 struct RayList {
     int32_t* point;  // (room,): where each begins

@@ -4,12 +4,11 @@
 
 #include "../abi.h"
 #include "bake_types.h"
+#include "emitter_cones.h"
 #include "net_points.h"
 
 namespace sailenv {
 namespace {
-
-constexpr double NEAR = 1.02;  // nearer to the middle of an emitter, in radii, none is looked for
 
 template <class Real>
 Real along(const Real* d, const float* n) {
@@ -34,22 +33,6 @@ void list_if_above(const LitPoints& points, int64_t k, const double* d, double l
     list.point[made] = static_cast<int32_t>(k);
     lift(points, k, list.origins + 3 * made);
     for (int c = 0; c < 3; c++) list.towards[3 * made + c] = static_cast<float>(d[c] / length);
-}
-
-// The density, over solid angle, of directions into the cones of all emitters.
-double cone_density(const Emitters& emitters, const float* p, const float* d) {
-    double density = 0.0;
-    for (int64_t e = 0; e < emitters.count; e++) {
-        const float* ball = emitters.balls + 4 * e;
-        const float x = ball[0] - p[0], y = ball[1] - p[1], z = ball[2] - p[2];
-        const float d2 = x * x + y * y + z * z, r2 = ball[3] * ball[3];
-        if (d2 <= NEAR * NEAR * r2) continue;
-        const float ahead = d[0] * x + d[1] * y + d[2] * z;
-        if (ahead > 0.0f && ahead * ahead >= d2 - r2) {
-            density += 1.0 / (2.0 * PI * (1.0 - std::sqrt(1.0 - static_cast<double>(r2 / d2))));
-        }
-    }
-    return density;
 }
 
 }  // namespace
@@ -118,19 +101,12 @@ SAILENV_KERNEL(emitter_rays)
     const double cells = std::sqrt(static_cast<double>(rays));
     *list->made = 0;
     for (int64_t k = 0; k < points->count; k++) {
-        float axis[3];
-        for (int c = 0; c < 3; c++) axis[c] = ball[c] - points->positions[3 * k + c];
-        const float d2 = along(axis, axis), r2 = ball[3] * ball[3];
-        if (!(d2 > NEAR * NEAR * r2)) continue;
-        const float far = std::sqrt(d2);
-        for (float& c : axis) c /= far;
-        const double edge = std::sqrt(1.0 - static_cast<double>(r2 / d2));
+        EmitterCone cone;
+        if (!cone.about(ball, points->positions + 3 * k)) continue;
         for (int64_t m = 0; m < rays; m++) {
             double u, v, d[3];
             shifted_point(pattern + 2 * m, points->shifts + 2 * k, cells, &u, &v);
-            const double up = 1.0 - u * (1.0 - edge);
-            const double out = std::sqrt(std::max(1.0 - up * up, 0.0)), turn = 2.0 * PI * v;
-            around_axis(axis, out * std::cos(turn), out * std::sin(turn), up, d);
+            cone.direction(u, v, d);
             list_if_above(*points, k, d, 1.0, *list);
         }
     }
@@ -149,8 +125,7 @@ SAILENV_KERNEL(emitter_weights)
         const float* d = towards + 3 * ray;
         const double own = along(d, points->normals + 3 * k) / PI;
         const double density = cone_density(*emitters, points->positions + 3 * k, d);
-        weights[ray] = static_cast<float>(
-            own / (static_cast<double>(others) * own + static_cast<double>(shots) * density));
+        weights[ray] = static_cast<float>(balanced(own, others, shots, density));
     }
     return STATUS_OK;
 }
@@ -180,8 +155,8 @@ SAILENV_KERNEL(weights_within_cones)
                     std::max(static_cast<double>(along(d, points->normals + 3 * k)), 1e-3) / PI;
                 point[count] = static_cast<int32_t>(k);
                 texel[count] = met;
-                weights[count] = static_cast<float>(
-                    own / (all * own + static_cast<double>(shots) * density) - 1.0 / all);
+                weights[count] =
+                    static_cast<float>(balanced(own, rays, shots, density) - 1.0 / all);
             }
             count++;
         }

@@ -42,15 +42,38 @@ struct SeenChanges {
     }
 };
 
-// Which of some balls a ray passes through before `length`; the arithmetic is `ray_passes_ball`'s.
-LANES_INLINE uint32_t passed_balls(const float (*balls)[WIDTH], const Ray& r, float length) {
+// Where a ray comes nearest to the middles of some balls before `length`, and how near, squared;
+// the arithmetic is `ray_passes_ball`'s.
+struct Nearest {
+    f8 t, square;
+};
+LANES_INLINE Nearest nearest_to_middles(const float (*balls)[WIDTH], const Ray& r, float length) {
     const f8 x = load(balls[0]) - r.o[0], y = load(balls[1]) - r.o[1], z = load(balls[2]) - r.o[2];
     const float d2 = r.d[0] * r.d[0] + r.d[1] * r.d[1] + r.d[2] * r.d[2];
     f8 t = (x * r.d[0] + y * r.d[1] + z * r.d[2]) / d2;
     t = t < 0.0f ? splat(0.0f) : t > length ? splat(length) : t;
     const f8 fx = x - t * r.d[0], fy = y - t * r.d[1], fz = z - t * r.d[2];
+    return {t, fx * fx + fy * fy + fz * fz};
+}
+
+// Which of some balls a ray passes through before `length`.
+LANES_INLINE uint32_t passed_balls(const float (*balls)[WIDTH], const Ray& r, float length) {
     const f8 reach = load(balls[3]);
-    return lane_bits(fx * fx + fy * fy + fz * fz <= reach * reach);
+    return lane_bits(nearest_to_middles(balls, r, length).square <= reach * reach);
+}
+
+// Whether any of them may reach into a cone about a ray of unit direction.
+static inline bool reach_into(const SeenChanges& seen, const Ray& axis, double edge) {
+    if (seen.count > SeenChanges::MOST) return true;
+    const float cosine = std::max(static_cast<float>(edge), 1e-3f);
+    const float sine = std::sqrt(std::max(1.0f - cosine * cosine, 0.0f));
+    for (int64_t first = 0; first < seen.count; first += WIDTH) {
+        const float (*balls)[WIDTH] = seen.balls[first / WIDTH];
+        const Nearest near = nearest_to_middles(balls, axis, ENDLESS);
+        const f8 reach = (load(balls[3]) + near.t * sine) / cosine;
+        if (lane_bits(near.square <= reach * reach) != 0) return true;
+    }
+    return false;
 }
 
 // Calls with each of them whose ball a ray passes through before `length`, in their order.

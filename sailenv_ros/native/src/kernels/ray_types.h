@@ -41,6 +41,12 @@ struct RayInstance {
     int32_t padding;
 };
 
+// Balls around small things that shine; see bake/emitters.py.
+struct Emitters {
+    const float* balls;  // (count, 4): middle and radius
+    int64_t count;
+};
+
 // What rays may meet, before and after a change.
 struct RayScene {
     const TreeNode* nodes;       // over `order`
@@ -53,6 +59,7 @@ struct RayScene {
     const int32_t* patches;      // (height, width): of each texel, -1 for none
     const float* before;         // (patches, channels): radiance
     const float* after;
+    Emitters emitters;
     int64_t changed_count, patch_count, resting_count;
     int32_t sky_height, sky_width;
     int32_t height, width;

@@ -5,6 +5,7 @@
 
 #include "../abi.h"
 #include "../threads.h"
+#include "emitter_cones.h"
 #include "light_changes.h"
 #include "relight_types.h"
 #include "sky_picture.h"
@@ -17,6 +18,9 @@ constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 // A point that something which changes covers: it takes so much of the view, so near.
 constexpr double COVERED = 0.95;
 constexpr float COVERED_M = 0.015f;
+
+// Rays from a point into the cone of each emitter, at most.
+constexpr int64_t EMITTER_RAYS = 8;
 
 // An object takes light from surfaces nearer than this many of its radii.
 constexpr float OWN_REACH = 2.0f;
@@ -120,15 +124,32 @@ public:
     }
 
     Ray ray(const float* point) const {
-        float u = point[0] + turn_u_, v = point[1] + turn_v_;
-        u -= std::floor(u);
-        v -= std::floor(v);
-        float d[3];
+        float u, v, d[3];
+        turned(point, &u, &v);
         cosine_direction(n_, u, v, d);
         return ray_of(origin_, d);
     }
 
+    Ray along(const float* direction) const { return ray_of(origin_, direction); }
+
+    // Into a cone instead.
+    Ray ray_into(const EmitterCone& cone, const float* point) const {
+        float u, v, d[3];
+        turned(point, &u, &v);
+        double towards[3];
+        cone.direction(u, v, towards);
+        for (int c = 0; c < 3; c++) d[c] = static_cast<float>(towards[c]);
+        return ray_of(origin_, d);
+    }
+
 private:
+    void turned(const float* point, float* u, float* v) const {
+        *u = point[0] + turn_u_;
+        *v = point[1] + turn_v_;
+        *u -= std::floor(*u);
+        *v -= std::floor(*v);
+    }
+
     const float* n_;
     float turn_u_, turn_v_, origin_[3];
 };
@@ -174,30 +195,56 @@ Gathered gather_whole(const RayScene& s, const CosineRays& rays, const PatchQuer
     return {inside ? PATCH_INSIDE : PATCH_WHOLE, static_cast<float>(q.rays) / near};
 }
 
-// The change; or all of the light, where little of what was baked is of use.
-Gathered gather_difference(const RayScene& s, const SeenChanges& seen, const CosineRays& rays,
-                           const PatchQuery& q, uint32_t number, float* sum) {
-    const float each = 1.0f / static_cast<float>(q.rays);
-    int64_t changed = 0, backs = 0;
-    float near = 0.0f;
-    for (int64_t m = 0; m < q.rays; m++) {
-        const Ray r = rays.ray(q.pattern + 2 * m);
+// Sums up what rays from one patch meet before and after. Lamps are so small and bright that few
+// rays in all directions meet them, each for far too much: so some are cast into the cone of each
+// emitter, and those of the others that lie in a cone count less.
+struct Differences {
+    const RayScene& s;
+    const SeenChanges& seen;
+    const float *p, *n;
+    int64_t rays, shots;
+    float* sum;
+    // How many of the rays in all directions met a change, by nearness, and saw a back.
+    double changed = 0.0, near = 0.0, backs = 0.0;
+
+    void look(const Ray& r) {
         Hit before, after;
-        if (!meet_both(s, seen, r, before, after)) continue;
-        changed++;
-        near += nearness_of(std::min(before.t, after.t));
-        add_seen(s, before, r, s.before, -each, sum);
-        backs += !add_seen(s, after, r, s.after, each, sum);
+        if (!meet_both(s, seen, r, before, after)) return;
+        const double all = static_cast<double>(rays), density = cone_density(s.emitters, p, r.d);
+        double share = 1.0 / all;
+        if (density > 0.0) share = balanced(OVER_PI * dot(r.d, n), rays, shots, density);
+        const float weight = static_cast<float>(share);
+        changed += share * all;
+        near += share * all * nearness_of(std::min(before.t, after.t));
+        add_seen(s, before, r, s.before, -weight, sum);
+        if (!add_seen(s, after, r, s.after, weight, sum)) backs += share * all;
+    }
+};
+
+// The change; or all of the light, where little of what was baked is of use.
+Gathered gather_difference(const RayScene& s, const SeenChanges& seen, const float* p,
+                           const float* n, const PatchQuery& q, uint32_t number, float* sum) {
+    const CosineRays rays(p, n, number);
+    Differences found = {s, seen, p, n, q.rays, std::min(q.shots, EMITTER_RAYS), sum};
+    for (int64_t m = 0; m < q.rays; m++) found.look(rays.ray(q.pattern + 2 * m));
+    for (int64_t e = 0; e < s.emitters.count; e++) {
+        EmitterCone cone;
+        if (!cone.about(s.emitters.balls + 4 * e, p)) continue;
+        if (!reach_into(seen, rays.along(cone.axis), cone.edge)) continue;
+        for (int64_t m = 0; m < found.shots; m++) {
+            const Ray r = rays.ray_into(cone, q.shot_pattern + 2 * m);
+            if (dot(r.d, n) > 0.0f) found.look(r);
+        }
     }
     const double count = static_cast<double>(q.rays);
-    if (static_cast<double>(changed) > q.most_changed * count) {
+    if (found.changed > q.most_changed * count) {
         memset(sum, 0, static_cast<size_t>(s.channels) * sizeof(float));
         return gather_whole(s, rays, q, number, sum);
     }
-    if (changed == 0) return {PATCH_AS_IT_WAS, FAR_M};
-    const float nearness = static_cast<float>(changed) / near;
-    const bool covered = static_cast<double>(changed) > COVERED * count && nearness < COVERED_M;
-    const bool inside = static_cast<double>(backs) > q.inside_share * count;
+    if (found.changed == 0.0) return {PATCH_AS_IT_WAS, FAR_M};
+    const float nearness = static_cast<float>(found.changed / found.near);
+    const bool covered = found.changed > COVERED * count && nearness < COVERED_M;
+    const bool inside = found.backs > q.inside_share * count;
     return {inside || covered ? PATCH_INSIDE : PATCH_CHANGED, nearness};
 }
 
@@ -217,7 +264,7 @@ void gather_patch(const RayScene& s, const PatchQuery& q, int64_t k, const Patch
     } else {
         const SeenChanges seen = seen_changes(s, p, n, static_cast<float>(q.least));
         if (seen.count > 0) {
-            own = gather_difference(s, seen, CosineRays(p, n, number), q, number, bounced);
+            own = gather_difference(s, seen, p, n, q, number, bounced);
         }
     }
     result.found[k] = own.state;

@@ -29,11 +29,13 @@ from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.light_shapes import light_record
 from sailenv_ros.types.lights import Light
+from sailenv_ros.types.model import Model, ModelPart
 from sailenv_ros.types.snapshot import WorldSnapshot
 from tests.support.bake_scenes import DARK
 from tests.support.movable_boxes import (
     BLACK,
     BOX,
+    FLOOR,
     LAMP,
     WHITE_SKY,
     movable_objects,
@@ -42,7 +44,7 @@ from tests.support.movable_boxes import (
     scene_of,
     scene_on_disk,
 )
-from tests.support.tiny_scenes import box_mesh, model_of
+from tests.support.tiny_scenes import box_mesh, mesh_of, model_of
 
 BOARD = model_of(box_mesh((0.6, 0.4, 0.002)), base_colour=BLACK)
 ON_THE_FLOOR = Pose((0.0, 0.0, 0.101))
@@ -168,6 +170,30 @@ def test_texels_are_asked_wherever_a_soft_shadow_ends(monkeypatch: pytest.Monkey
         shares.append(after / before)
     assert shares[1].min() < 0.8
     assert np.abs(shares[0] - shares[1]).max() < 0.02
+
+
+def test_what_hides_a_small_emitter_takes_all_of_its_light() -> None:
+    """A glowing cube of 4 cm, a board half-way up: a shadow twice its size, and no stain beside."""
+    cube, ground = box_mesh(0.04), FLOOR.parts[0]
+    glowing = ModelPart(
+        mesh=mesh_of(
+            cube.positions + np.array([0.0, 0.0, 2.0]), cube.normals, cube.uvs, cube.triangles
+        ),
+        material=replace(ground.material, emission=(200.0, 200.0, 200.0)),
+    )
+    floor = Model(name="floor and lamp", parts=(ground, glowing))
+    snapshot = room((BOARD, Pose((0.0, 0.0, 1.0))), floor=floor)
+    baked = snapshot.contents.baked
+    assert baked is not None
+    low = scene_of(snapshot).positions[:, 2] < 0.1
+    places, before = (one[low] for one in texels(snapshot, baked.layers[0].bounced))
+    after = texels(snapshot, shadowed(snapshot).layers[0].bounced)[1][low]
+    beyond = (np.abs(places) / (0.6, 0.4)).max(axis=1)
+    assert before.min() > 0.005
+    left = after / before
+    # Single rays would leave all or nothing.
+    assert np.sqrt(np.mean(left[beyond < 0.75] ** 2)) < 0.2
+    assert np.sqrt(np.mean((left - 1.0)[beyond > 1.5] ** 2)) < 0.04
 
 
 def test_only_the_lit_side_of_a_thing_gives_light_back() -> None:
