@@ -19,8 +19,9 @@ constexpr float FAR_M = 2.0f;  // what is farther is as good as endless
 constexpr double COVERED = 0.95;
 constexpr float COVERED_M = 0.015f;
 
-// Rays from a point into the cone of each emitter, at most.
-constexpr int64_t EMITTER_RAYS = 8;
+// Rays from a point into the cone of each emitter: one for EACH of those in all directions, at
+// most.
+constexpr int64_t EACH = 16, MOST_EMITTER_RAYS = 8;
 
 // An object takes light from surfaces nearer than this many of its radii.
 constexpr float OWN_REACH = 2.0f;
@@ -174,77 +175,88 @@ bool gets_light(const Ray& r, const Hit& hit, const RayInstance& past, uint32_t 
     return !instance_occludes(past, ray_of(from, d), 1e30f);
 }
 
-// All of the light.
-Gathered gather_whole(const RayScene& s, const CosineRays& rays, const PatchQuery& q,
-                      uint32_t number, float* sum) {
-    const float each = 1.0f / static_cast<float>(q.rays);
-    int64_t backs = 0;
-    float near = 0.0f;
-    for (int64_t m = 0; m < q.rays; m++) {
-        const Ray r = rays.ray(q.pattern + 2 * m);
-        const Hit hit = meet_after(s, r);
-        near += nearness_of(hit.t);
-        if (q.own != nullptr && hit.triangle >= 0 && hit.front &&
-            hit.t < OWN_REACH * q.own->sphere[3]) {
-            const uint32_t next = number * static_cast<uint32_t>(q.rays) + static_cast<uint32_t>(m);
-            if (!gets_light(r, hit, *q.own, next)) continue;
-        }
-        backs += !add_seen(s, hit, r, s.after, each, sum);
-    }
-    const bool inside = static_cast<double>(backs) > q.inside_share * static_cast<double>(q.rays);
-    return {inside ? PATCH_INSIDE : PATCH_WHOLE, static_cast<float>(q.rays) / near};
+// Rays into the cone of each emitter: lamps are so small and bright that few rays in all directions
+// meet them, each for far too much. Those of them that lie in a cone count less.
+int64_t emitter_rays(const PatchQuery& q) {
+    return std::min({std::max(q.rays / EACH, int64_t{1}), MOST_EMITTER_RAYS, q.shots});
 }
 
-// Sums up what rays from one patch meet before and after. Lamps are so small and bright that few
-// rays in all directions meet them, each for far too much: so some are cast into the cone of each
-// emitter, and those of the others that lie in a cone count less.
-struct Differences {
-    const RayScene& s;
-    const SeenChanges& seen;
-    const float *p, *n;
-    int64_t rays, shots;
-    float* sum;
-    // How many of the rays in all directions met a change, by nearness, and saw a back.
-    double changed = 0.0, near = 0.0, backs = 0.0;
+// How much a ray counts of those of a point.
+double share_of_ray(const RayScene& s, const float* p, const float* n, const Ray& r,
+                    const PatchQuery& q) {
+    const double density = cone_density(s.emitters, p, r.d);
+    if (density == 0.0) return 1.0 / static_cast<double>(q.rays);
+    return balanced(OVER_PI * dot(r.d, n), q.rays, emitter_rays(q), density);
+}
 
-    void look(const Ray& r) {
-        Hit before, after;
-        if (!meet_both(s, seen, r, before, after)) return;
-        const double all = static_cast<double>(rays), density = cone_density(s.emitters, p, r.d);
-        double share = 1.0 / all;
-        if (density > 0.0) share = balanced(OVER_PI * dot(r.d, n), rays, shots, density);
-        const float weight = static_cast<float>(share);
-        changed += share * all;
-        near += share * all * nearness_of(std::min(before.t, after.t));
-        add_seen(s, before, r, s.before, -weight, sum);
-        if (!add_seen(s, after, r, s.after, weight, sum)) backs += share * all;
+// Calls with each ray of a point into a cone for which `wanted` holds.
+template <class Wanted, class Use>
+void for_emitter_rays(const RayScene& s, const CosineRays& rays, const float* p, const float* n,
+                      const PatchQuery& q, const Wanted& wanted, const Use& use) {
+    const int64_t shots = emitter_rays(q);
+    for (int64_t e = 0; e < s.emitters.count; e++) {
+        EmitterCone cone;
+        if (!cone.about(s.emitters.balls + 4 * e, p) || !wanted(cone)) continue;
+        for (int64_t m = 0; m < shots; m++) {
+            const Ray r = rays.ray_into(cone, q.shot_pattern + 2 * m);
+            if (dot(r.d, n) > 0.0f) use(r);
+        }
     }
-};
+}
+
+// All of the light.
+Gathered gather_whole(const RayScene& s, const float* p, const float* n, const PatchQuery& q,
+                      uint32_t number, float* sum) {
+    const CosineRays rays(p, n, number);
+    uint32_t next = number * static_cast<uint32_t>(2 * q.rays);
+    double backs = 0.0, near = 0.0;
+    const auto look = [&](const Ray& r) {
+        const Hit hit = meet_after(s, r);
+        const double share = share_of_ray(s, p, n, r, q);
+        near += share * nearness_of(hit.t);
+        next++;
+        if (q.own != nullptr && hit.triangle >= 0 && hit.front &&
+            hit.t < OWN_REACH * q.own->sphere[3] && !gets_light(r, hit, *q.own, next)) {
+            return;
+        }
+        if (!add_seen(s, hit, r, s.after, static_cast<float>(share), sum)) backs += share;
+    };
+    for (int64_t m = 0; m < q.rays; m++) look(rays.ray(q.pattern + 2 * m));
+    const auto always = [](const EmitterCone&) { return true; };
+    for_emitter_rays(s, rays, p, n, q, always, look);
+    const bool inside = backs > q.inside_share;
+    return {inside ? PATCH_INSIDE : PATCH_WHOLE, static_cast<float>(1.0 / near)};
+}
 
 // The change; or all of the light, where little of what was baked is of use.
 Gathered gather_difference(const RayScene& s, const SeenChanges& seen, const float* p,
                            const float* n, const PatchQuery& q, uint32_t number, float* sum) {
     const CosineRays rays(p, n, number);
-    Differences found = {s, seen, p, n, q.rays, std::min(q.shots, EMITTER_RAYS), sum};
-    for (int64_t m = 0; m < q.rays; m++) found.look(rays.ray(q.pattern + 2 * m));
-    for (int64_t e = 0; e < s.emitters.count; e++) {
-        EmitterCone cone;
-        if (!cone.about(s.emitters.balls + 4 * e, p)) continue;
-        if (!reach_into(seen, rays.along(cone.axis), cone.edge)) continue;
-        for (int64_t m = 0; m < found.shots; m++) {
-            const Ray r = rays.ray_into(cone, q.shot_pattern + 2 * m);
-            if (dot(r.d, n) > 0.0f) found.look(r);
-        }
-    }
-    const double count = static_cast<double>(q.rays);
-    if (found.changed > q.most_changed * count) {
+    // Shares of all rays: that met a change, by nearness, and that saw a back.
+    double changed = 0.0, near = 0.0, backs = 0.0;
+    const auto look = [&](const Ray& r) {
+        Hit before, after;
+        if (!meet_both(s, seen, r, before, after)) return;
+        const double share = share_of_ray(s, p, n, r, q);
+        const float weight = static_cast<float>(share);
+        changed += share;
+        near += share * nearness_of(std::min(before.t, after.t));
+        add_seen(s, before, r, s.before, -weight, sum);
+        if (!add_seen(s, after, r, s.after, weight, sum)) backs += share;
+    };
+    for (int64_t m = 0; m < q.rays; m++) look(rays.ray(q.pattern + 2 * m));
+    const auto reached = [&](const EmitterCone& cone) {
+        return reach_into(seen, rays.along(cone.axis), cone.edge);
+    };
+    for_emitter_rays(s, rays, p, n, q, reached, look);
+    if (changed > q.most_changed) {
         memset(sum, 0, static_cast<size_t>(s.channels) * sizeof(float));
-        return gather_whole(s, rays, q, number, sum);
+        return gather_whole(s, p, n, q, number, sum);
     }
-    if (found.changed == 0.0) return {PATCH_AS_IT_WAS, FAR_M};
-    const float nearness = static_cast<float>(found.changed / found.near);
-    const bool covered = found.changed > COVERED * count && nearness < COVERED_M;
-    const bool inside = found.backs > q.inside_share * count;
+    if (changed == 0.0) return {PATCH_AS_IT_WAS, FAR_M};
+    const float nearness = static_cast<float>(changed / near);
+    const bool covered = changed > COVERED && nearness < COVERED_M;
+    const bool inside = backs > q.inside_share;
     return {inside || covered ? PATCH_INSIDE : PATCH_CHANGED, nearness};
 }
 
@@ -260,7 +272,7 @@ void gather_patch(const RayScene& s, const PatchQuery& q, int64_t k, const Patch
     const uint32_t number = q.numbers[k];
     Gathered own = {PATCH_AS_IT_WAS, FAR_M};
     if (q.wanted[k] == PATCH_WHOLE) {
-        own = gather_whole(s, CosineRays(p, n, number), q, number, bounced);
+        own = gather_whole(s, p, n, q, number, bounced);
     } else {
         const SeenChanges seen = seen_changes(s, p, n, static_cast<float>(q.least));
         if (seen.count > 0) {

@@ -23,8 +23,9 @@ from sailenv_ros.light.relight.scene_changes import Change, PlacedInstance
 from sailenv_ros.light.relight.shadow_maps import PointChanges
 from sailenv_ros.light.relight.shown_shadows import ShownShadows
 from sailenv_ros.light.relight.texel_changes import TexelChanges
+from sailenv_ros.native.ray_types import RAY_LIGHT
 from sailenv_ros.native.relight_kernels import gather_change
-from sailenv_ros.rays.ray_patterns import sequence_points
+from sailenv_ros.rays.ray_patterns import low_discrepancy_points, sequence_points
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.light_shapes import light_record
@@ -172,17 +173,23 @@ def test_texels_are_asked_wherever_a_soft_shadow_ends(monkeypatch: pytest.Monkey
     assert np.abs(shares[0] - shares[1]).max() < 0.02
 
 
-def test_what_hides_a_small_emitter_takes_all_of_its_light() -> None:
-    """A glowing cube of 4 cm, a board half-way up: a shadow twice its size, and no stain beside."""
-    cube, ground = box_mesh(0.04), FLOOR.parts[0]
+GLOWING_M, RADIANCE = 0.04, 200.0
+
+
+def under_a_lamp(*things: tuple[Model, Pose]) -> WorldSnapshot:
+    """A floor 2 m below a small glowing cube."""
+    cube, ground = box_mesh(GLOWING_M), FLOOR.parts[0]
+    positions = cube.positions + np.array([0.0, 0.0, 2.0])
     glowing = ModelPart(
-        mesh=mesh_of(
-            cube.positions + np.array([0.0, 0.0, 2.0]), cube.normals, cube.uvs, cube.triangles
-        ),
-        material=replace(ground.material, emission=(200.0, 200.0, 200.0)),
+        mesh=mesh_of(positions, cube.normals, cube.uvs, cube.triangles),
+        material=replace(ground.material, emission=(RADIANCE,) * 3),
     )
-    floor = Model(name="floor and lamp", parts=(ground, glowing))
-    snapshot = room((BOARD, Pose((0.0, 0.0, 1.0))), floor=floor)
+    return room(*things, floor=Model(name="floor and lamp", parts=(ground, glowing)))
+
+
+def test_what_hides_a_small_emitter_takes_all_of_its_light() -> None:
+    """A board half-way up: a shadow twice its size, and no stain beside."""
+    snapshot = under_a_lamp((BOARD, Pose((0.0, 0.0, 1.0))))
     baked = snapshot.contents.baked
     assert baked is not None
     low = scene_of(snapshot).positions[:, 2] < 0.1
@@ -194,6 +201,23 @@ def test_what_hides_a_small_emitter_takes_all_of_its_light() -> None:
     # Single rays would leave all or nothing.
     assert np.sqrt(np.mean(left[beyond < 0.75] ** 2)) < 0.2
     assert np.sqrt(np.mean((left - 1.0)[beyond > 1.5] ** 2)) < 0.04
+
+
+def test_all_of_the_light_of_a_small_emitter_is_found_by_few_rays() -> None:
+    """By the form factor of its lower side, at points that two rays in 10,000 would tell it."""
+    lighting = ObjectLighting(scene_of(under_a_lamp()), (), SurfacePoints())
+    points = np.random.default_rng(7).uniform(-0.1, 0.1, (500, 3)).astype(np.float32)
+    points[:, 2] = 0.5
+    up = np.tile(np.array([0, 0, 1], np.float32), (len(points), 1))
+    _, bounced, *_ = gather_change(
+        lighting.world.record, points, up, np.full(len(points), WHOLE, np.uint8),
+        low_discrepancy_points(64), np.zeros(0, RAY_LIGHT), sequence_points(16), 0.0,
+        inside_share=0.5, threads=1,
+    )  # fmt: skip
+    expected = RADIANCE * GLOWING_M**2 / (np.pi * (1.5 - GLOWING_M / 2.0) ** 2)
+    found = bounced[:, 0] / expected
+    assert found.mean() == pytest.approx(1.0, abs=0.05)
+    assert found.std() < 0.6
 
 
 def test_only_the_lit_side_of_a_thing_gives_light_back() -> None:
