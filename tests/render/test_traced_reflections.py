@@ -392,6 +392,23 @@ def test_a_thin_rod_mirrors_what_stands_beside_it(native: NativeRenderer, roll_d
     assert (rows > 0.25 * bright * shown_px).mean() > 0.9
 
 
+def test_the_rim_of_a_cup_shows_what_stands_behind_it(native: NativeRenderer) -> None:
+    """Of grey ceramics by Fresnel's law, where a quarter of its light and more is mirrored."""
+    radius_m, bright = 0.2, 0.4
+    look = {"base_colour": (0.5, 0.5, 0.5, 1.0), "roughness": 0.06}
+    rod = Thing(model_of(rod_mesh(radius_m, 6.0, 96), **look), Pose((3.0, 0.0, 0.0)))
+    glow = model_of(box_mesh((0.1, 9.0, 9.0)), base_colour=(0, 0, 0, 1), emission=(bright,) * 3)
+    scene = before_black(rod, Thing(glow, Pose((5.0, 0.0, 0.0))))
+    views = native.render(RenderRequest(scene, camera(640), ("rgb", "instance"))).views
+    rows = (linear(views["rgb"])[..., 1] * (views["instance"] == 2)).sum(axis=1)
+    # Across the rod, in radii: a normal there is turned by the angle of which this is the sine.
+    across = np.linspace(0.0, 1.0, 20_001)
+    fresnel = 0.04 + 0.96 * (1.0 - np.sqrt(1.0 - across**2)) ** 5
+    fresnel[fresnel / (fresnel + 0.5 * (1.0 - fresnel)) < 0.25] = 0.0
+    expected = 2.0 * radius_m / 3.0 * camera(640).intrinsics.fx * bright * fresnel.mean()
+    assert rows.mean() == pytest.approx(expected, rel=0.2)
+
+
 def post_mesh(width_m: float, edge_m: float, length_m: float) -> Mesh:
     """An upright board that faces -x, with a rounded edge on its left."""
     half, round_ = width_m / 2.0, np.sqrt(0.5)

@@ -127,10 +127,6 @@ bool choose_pixels(const Chunk& c, bool of_row, TracedPixels& pixels) {
         const float beside = of_row ? ray_spread(c, pixels.rays, i) : USUAL_ANGLE;
         const vec3 bend = vector_at(c.bend, i);
         const float angle = pixels.angle[i] = max(beside, 2.0f * std::sqrt(dot(bend, bend)));
-        // Where little is mirrored, pictures of the room do.
-        if (pixels.mirrored[i] < LARGE_SHARE) {
-            pixels.share[i] *= 1.0f - smoothstep(FLAT, BENT, angle);
-        }
         pixels.meets_faces[i] = c.roughness[i] < SMOOTH && angle <= FLAT;
         pixels.step[i] = step_of(c.roughness[i], angle, pixels.mirrored[i] >= LARGE_SHARE);
         some |= pixels.share[i] > 0.0f;
