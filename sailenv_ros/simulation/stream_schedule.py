@@ -102,12 +102,18 @@ class StreamSchedule:
 
     def _render_together(self, cameras: Sequence[AgentRecord]) -> None:
         now = self._scene.world.step_count
-        # Other frames of this walk may have taken so long that a stream was closed.
-        due = [record for record in cameras if record.due_step() <= now and record.wanted_views]
-        # Who changes its mind while this is drawn gets it all the same: it is not drawn again.
-        waiting = [[stream for stream in record.streams if stream.views] for record in due]
-        frames = self._render([(record, record.wanted_views) for record in due]) if due else ()
-        for record, streams, frame in zip(due, waiting, frames, strict=True):
+        due: list[tuple[AgentRecord, frozenset[str], list[FrameStream]]] = []
+        for record in cameras:
+            if record.due_step() > now:
+                continue
+            # Threads of others change what a stream wants at any time: each is asked once. Who
+            # changes its mind while this is drawn gets it all the same: it is not drawn again.
+            wanted = [(stream, views) for stream in record.streams if (views := stream.views)]
+            if wanted:
+                every = frozenset(view for _, views in wanted for view in views)
+                due.append((record, every, [stream for stream, _ in wanted]))
+        frames = self._render([(record, views) for record, views, _ in due]) if due else ()
+        for (record, _, streams), frame in zip(due, frames, strict=True):
             # One of those that are passed over is the frame just made.
             self.skipped_frames += max(0, record.skip_to(now + 1) - 1)
             for stream in streams:

@@ -21,6 +21,7 @@ from sailenv_ros.errors import (
     UnknownName,
 )
 from sailenv_ros.simulation.frame_maker import FrameMaker
+from sailenv_ros.simulation.frame_stream import FrameStream
 from sailenv_ros.simulation.synchronous import SynchronousSimulation
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.camera import CameraIntrinsics
@@ -130,6 +131,31 @@ def test_a_view_that_nobody_wants_is_not_rendered() -> None:
     core.open_stream("eye", ("flow", "rgb"), lambda _: None)
     core.step(8)
     assert {views for *_, views in renderer.calls} == {("rgb", "depth", "flow")}
+
+
+@pytest.mark.parametrize("asked", range(1, 6))
+def test_whoever_wants_nothing_any_more_may_say_so_at_any_time(
+    core: SynchronousSimulation, monkeypatch: pytest.MonkeyPatch, asked: int
+) -> None:
+    """From a thread of its own, between any two looks at what it wants: the simulation goes on."""
+    core.register_agent(spec())
+    stream = core.open_stream("eye", ("depth",), lambda _: None)
+    left = asked
+
+    def views(own: FrameStream) -> tuple[str, ...]:
+        nonlocal left
+        left -= 1
+        now = own._views
+        if left == 0:
+            own.set_views(())
+        return now
+
+    monkeypatch.setattr(FrameStream, "views", property(views))
+    core.streams.render_due()
+    core.advance_to(24, every_frame=False)
+    assert left <= 0
+    assert core.world.step_count == 24
+    assert not stream.closed
 
 
 def test_a_late_loop_renders_the_last_frame_and_counts_the_others() -> None:
