@@ -11,7 +11,6 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import label
 
 from sailenv_ros.light.bake.direct import squared_distances
 from sailenv_ros.light.bake.texels import Texels
@@ -91,6 +90,9 @@ def apart(emitters: Floats) -> Floats:
 
 def _groups(positions: NDArray[np.float64]) -> list[NDArray[np.intp]]:
     """Return which points lie near each other: the bulbs of a chandelier are a group each."""
+    # Whose light is read from disk needs none of it.
+    from scipy.ndimage import label
+
     cells = np.floor((positions - positions.min(axis=0)) / GROUP_M).astype(np.intp)
     if cells.max() >= MOST_CELLS:
         return [np.arange(len(positions))]
