@@ -27,7 +27,7 @@ from sailenv_ros.system.threads import thread_count
 from sailenv_ros.types.digests import add_array, once
 from sailenv_ros.types.model import Model
 
-__all__ = ["LEAST_WEIGHT", "arriving_share", "spread_points", "vertex_occlusion"]
+__all__ = ["LEAST_WEIGHT", "POINTS", "arriving_share", "spread_points", "vertex_occlusion"]
 
 Floats: TypeAlias = NDArray[np.float32]
 Doubles: TypeAlias = NDArray[np.float64]
@@ -110,9 +110,9 @@ def _arrays(model: Model, triangles: ModelTriangles) -> dict[str, Floats]:
     return {f"part_{number}": part for number, part in enumerate(parts)}
 
 
-def spread_points(areas: Doubles) -> tuple[NDArray[np.intp], Doubles]:
-    """Spread points: (P,) the triangle of each, and (P, 3) weights of its corners."""
-    wanted = np.ceil(POINTS * areas / max(float(areas.sum()), 1e-30))
+def spread_points(areas: Doubles, count: int = POINTS) -> tuple[NDArray[np.intp], Doubles]:
+    """Spread some points or more: (P,) the triangle of each, and (P, 3) weights of its corners."""
+    wanted = np.ceil(count * areas / max(float(areas.sum()), 1e-30))
     each = np.clip(wanted, 1, MOST_OF_TRIANGLE).astype(np.intp)
     owners = np.repeat(np.arange(len(areas)), each)
     number = np.arange(len(owners)) - np.repeat(np.cumsum(each) - each, each)

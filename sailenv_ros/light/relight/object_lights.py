@@ -35,7 +35,7 @@ __all__ = ["ObjectLights", "with_object_light"]
 FAR_M = 1.0
 """Furniture that is farther from an object's ball counts when its own light is refined [m]."""
 
-LEAST_LARGE_M = 0.25
+LEAST_AT_VERTICES_M = 0.05
 """Radius of an object's ball from which light at its vertices is found: of smaller ones little is
 seen of it [m]."""
 
@@ -230,7 +230,7 @@ class ObjectLights:
                 _Part(QUICK, resting, without),
             )
         radius, model = movable.radii[place], movable.things[place].model
-        if radius >= LEAST_LARGE_M and vertex_points(model) is not None:
+        if radius >= LEAST_AT_VERTICES_M and vertex_points(model) is not None:
             large = [other for other in resting if movable.radii[other] >= LEAST_SHARE * radius]
             parts[FOUND] = _Part(AT_VERTICES, large, self._around(place, large))
         return parts

@@ -13,7 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.rays.model_triangles import triangles_of
-from sailenv_ros.rays.self_occlusion import LEAST_WEIGHT, spread_points, vertex_occlusion
+from sailenv_ros.rays.self_occlusion import (
+    LEAST_WEIGHT,
+    POINTS,
+    spread_points,
+    vertex_occlusion,
+)
 from sailenv_ros.types.digests import once
 from sailenv_ros.types.model import Model
 
@@ -26,6 +31,10 @@ LEAST_HIDDEN = 0.1
 
 MOST_VERTICES = 8192
 """Of a model that are asked: leaves of a plant are too many, and too small."""
+
+WHOLE_M, LEAST_POINTS = 0.25, 512
+"""Radius from which on models have `POINTS` [m], and how many the smallest have, unless they have
+more triangles."""
 
 RAYS = 1 << 17
 """From all points of a model together, as long as each has no fewer and no more than these."""
@@ -139,9 +148,9 @@ def vertex_points(model: Model) -> VertexPoints | None:
 
     None for models that hide little of themselves and are no veils, and for those with glass.
     """
-    *firsts, count = model.first_vertices
+    *firsts, vertex_count = model.first_vertices
     every = triangles_of(model)
-    if not 0 < count <= MOST_VERTICES or not len(every.areas_m2):
+    if not 0 < vertex_count <= MOST_VERTICES or not len(every.areas_m2):
         return None
     if not (model.is_veil or every.passes.max() == 0.0):
         return None
@@ -150,7 +159,9 @@ def vertex_points(model: Model) -> VertexPoints | None:
     hidden = np.concatenate(vertex_occlusion(model)).astype(np.float64)
     if not model.is_veil and hidden[triangles].mean() < LEAST_HIDDEN:
         return None
-    owners, weights = spread_points(every.areas_m2)
+    radius_m = float(np.linalg.norm(np.ptp(model.bounds(), axis=0))) / 2.0
+    count = int(np.clip(POINTS * (radius_m / WHOLE_M) ** 2, LEAST_POINTS, POINTS))
+    owners, weights = spread_points(every.areas_m2, count)
     corners = triangles[owners]
 
     def between(values: Doubles) -> Doubles:
@@ -168,6 +179,6 @@ def vertex_points(model: Model) -> VertexPoints | None:
         weights=weights,
         edges=edges,
         nearness=1.0 / (1.0 + (lengths.astype(np.float64) / NEAR_M) ** 2),
-        vertex_count=count,
+        vertex_count=vertex_count,
         is_veil=model.is_veil,
     )

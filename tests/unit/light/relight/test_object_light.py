@@ -145,23 +145,32 @@ def test_light_in_an_open_box_comes_from_where_it_is_open() -> None:
         assert inner == pytest.approx(0.8, rel=0.1)
 
 
-def test_in_a_hollow_a_lamp_shines_where_it_is_seen() -> None:
-    """Half a sphere with a lamp beside: what the rim hides is dark, the rest as arithmetic says."""
-    hollow, middle = model_of(bowl(), base_colour=BLACK, roughness=1.0), np.array([0.0, 0.0, 2.0])
+@pytest.mark.parametrize(("radius_m", "soft", "most"), [(1.0, 0.05, 0.0), (0.08, 0.2, 0.2)])
+def test_in_a_hollow_a_lamp_shines_where_it_is_seen(
+    radius_m: float, soft: float, most: float
+) -> None:
+    """Half a sphere with a lamp beside: what the rim hides is dark, the rest as arithmetic says.
+
+    The lamp is a ball of 6 cm: to a cup it is large, and so is the border of the rim's shadow.
+    """
+    half, middle = bowl(), np.array([0.0, 0.0, 2.0])
+    sized = replace(half, positions=np.float32(radius_m) * half.positions)
+    hollow = model_of(sized, base_colour=BLACK, roughness=1.0)
     lamp = np.array([1.6, 0.0, 3.0])
     lit = replace(LAMP, position_m=tuple(lamp.tolist()))
     snapshot = room((hollow, Pose((0.0, 0.0, 2.0))), lights=(lit,))
     found = ObjectLights().update(snapshot, scene_of(snapshot), (), threads=1)[2].found[1, :, 1]
     normals = hollow.normals.astype(np.float64)
-    points = middle - normals
+    points = middle - radius_m * normals
     way = lamp - points
     wanted = (normals * way).sum(axis=1) / (np.pi * np.linalg.norm(way, axis=1) ** 3)
     through = points + way * ((2.0 - points[:, 2]) / way[:, 2])[:, None]
-    away = np.linalg.norm(through[:, :2], axis=1)
-    inside, below = points[:, 2] < 1.9, (away < 0.95) & (wanted > 0.02)
+    away = np.linalg.norm(through[:, :2], axis=1) / radius_m
+    inside, below = points[:, 2] < 2.0 - 0.1 * radius_m, (away < 1.0 - soft) & (wanted > 0.02)
     np.testing.assert_allclose(found[inside & below], wanted[inside & below], rtol=0.05)
-    assert np.abs(found[inside & (away > 1.05)]).max() == 0.0
-    assert min((inside & below).sum(), (inside & (away > 1.05)).sum()) > 60
+    hidden = inside & (away > 1.05)
+    assert np.abs(found[hidden]).mean() <= most * wanted[hidden].max()
+    assert min((inside & below).sum(), hidden.sum()) > 60
 
 
 def test_few_rays_leave_no_bright_dots_at_vertices() -> None:
