@@ -77,10 +77,12 @@ class AgentRecord:
         self.latest = self.earlier = None
         self.notes.clear()
 
-    @property
-    def wanted_views(self) -> frozenset[str]:
-        """Union of the views that its streams want."""
-        return frozenset(view for stream in self.streams for view in stream.views)
+    def wanted(self) -> dict[FrameStream, tuple[str, ...]]:
+        """Return the views that each of its streams wants now, of those that want any.
+
+        Each is asked once: threads of others change what it wants at any time.
+        """
+        return {stream: views for stream in self.streams if (views := stream.views)}
 
     def due_step(self) -> int:
         """Return the physics step at which its next streamed frame is due."""
@@ -88,7 +90,7 @@ class AgentRecord:
 
     def last_due_step(self, step: int) -> int:
         """Return the last step not after `step` at which a frame is due; -1 if there is none."""
-        if not self.wanted_views or not self.spec.rate_hz or self.due_step() > step:
+        if not self.wanted() or not self.spec.rate_hz or self.due_step() > step:
             return -1
         count = math.floor(step * self.spec.rate_hz / STEPS_PER_SECOND + 1e-9)
         return self._step_of(count)

@@ -102,18 +102,13 @@ class StreamSchedule:
 
     def _render_together(self, cameras: Sequence[AgentRecord]) -> None:
         now = self._scene.world.step_count
-        due: list[tuple[AgentRecord, frozenset[str], list[FrameStream]]] = []
-        for record in cameras:
-            if record.due_step() > now:
-                continue
-            # Threads of others change what a stream wants at any time: each is asked once. Who
-            # changes its mind while this is drawn gets it all the same: it is not drawn again.
-            wanted = [(stream, views) for stream in record.streams if (views := stream.views)]
-            if wanted:
-                every = frozenset(view for _, views in wanted for view in views)
-                due.append((record, every, [stream for stream, _ in wanted]))
-        frames = self._render([(record, views) for record, views, _ in due]) if due else ()
-        for (record, _, streams), frame in zip(due, frames, strict=True):
+        # Other frames of this walk may have taken so long that a stream was closed. Who changes its
+        # mind while this is drawn gets it all the same: it is not drawn again.
+        asked = [(record, record.wanted()) for record in cameras if record.due_step() <= now]
+        due = [(record, wanted) for record, wanted in asked if wanted]
+        views = [(record, frozenset().union(*wanted.values())) for record, wanted in due]
+        frames = self._render(views) if due else ()
+        for (record, streams), frame in zip(due, frames, strict=True):
             # One of those that are passed over is the frame just made.
             self.skipped_frames += max(0, record.skip_to(now + 1) - 1)
             for stream in streams:
@@ -126,7 +121,7 @@ class StreamSchedule:
             record.streams[:] = [stream for stream in record.streams if not stream.closed]
             if not record.spec.rate_hz:
                 continue
-            if record.wanted_views:
+            if record.wanted():
                 wanted.append(record)
             else:
                 record.skip_to(self._scene.world.step_count)

@@ -17,7 +17,7 @@ from sailenv_ros.light.bake.texels import Texels
 from sailenv_ros.rays.static_geometry import StaticGeometry
 from sailenv_ros.types.lights import LAMP_TYPES, Light
 
-__all__ = ["MOST_EMITTERS", "apart", "close_to_lamps", "emitters_of"]
+__all__ = ["MOST_EMITTERS", "emitters_of", "without_nested"]
 
 Floats = NDArray[np.float32]
 
@@ -35,8 +35,8 @@ MOST_CELLS = 100
 LEAST_SHARE = 0.002
 """Least power of an emitter that is sampled, as a share of the strongest one's."""
 
-INSIDE = 0.25
-"""Share of its radius that an emitter lies in a larger one with, to be a part of it."""
+NESTED = 0.25
+"""Share of its radius by which the middle of an emitter lies within a larger one, to be nested."""
 
 LEVELS = 30.0, 300.0, 3000.0
 """Surfaces around a lamp are emitters where at least so many times as much light arrives as at the
@@ -47,16 +47,23 @@ NEAREST_M = 0.02
 
 
 def emitters_of(
-    geometry: StaticGeometry, texels: Texels, shining: Iterable[Floats]
+    geometry: StaticGeometry,
+    texels: Texels,
+    emitted: Iterable[Floats],
+    lights: Sequence[Light],
+    albedo: Floats,
 ) -> NDArray[np.float32]:
     """Return (E, 4) float32: middle and radius [m] of balls around small things that shine.
 
     Parameters
     ----------
-    shining : iterable of (N, 3) float32
-        What texels emit, once for each light and once for the surroundings.
+    emitted : iterable of (N, 3) float32
+        By texels: by themselves, and by the light in each lamp.
+    lights : sequence of Light
+    albedo : (N, 3) float32
     """
     owner = geometry.owner[texels.triangle]
+    shining = (*emitted, *_close_to_lamps(lights, texels, albedo))
     found: list[tuple[float, list[float]]] = []
     for emission in shining:
         bright = np.flatnonzero(emission.any(axis=1))
@@ -75,14 +82,14 @@ def emitters_of(
     return np.array(chosen[:MOST_EMITTERS], np.float32).reshape(-1, 4)
 
 
-def apart(emitters: Floats) -> Floats:
+def without_nested(emitters: Floats) -> Floats:
     """Return (E, 4) float32: emitters without those that lie in a larger one, or nearly so.
 
     One cone does for a bulb and its shade, as long as few rays are cast into it.
     """
     kept: list[Floats] = []
     for ball in emitters[np.argsort(-emitters[:, 3], kind="stable")]:
-        within = (np.linalg.norm(one[:3] - ball[:3]) + INSIDE * ball[3] <= one[3] for one in kept)
+        within = (np.linalg.norm(one[:3] - ball[:3]) + NESTED * ball[3] <= one[3] for one in kept)
         if not any(within):
             kept.append(ball)
     return np.array(kept, np.float32).reshape(-1, 4)
@@ -103,7 +110,7 @@ def _groups(positions: NDArray[np.float64]) -> list[NDArray[np.intp]]:
     return [np.flatnonzero(of_point == number) for number in range(1, count + 1)]
 
 
-def close_to_lamps(lights: Sequence[Light], texels: Texels, albedo: Floats) -> list[Floats]:
+def _close_to_lamps(lights: Sequence[Light], texels: Texels, albedo: Floats) -> list[Floats]:
     """Return what texels close to lamps send back of their light, as if they faced it.
 
     Lamps are balls, which may shine on what their middle lies behind: a stem through them.

@@ -17,7 +17,7 @@ from sailenv_ros.light.bake.back_to_back import back_to_back_faces
 from sailenv_ros.light.bake.bounces import Patches, patches_of
 from sailenv_ros.light.bake.denoise import denoised
 from sailenv_ros.light.bake.direct import Points
-from sailenv_ros.light.bake.emitters import close_to_lamps, emitters_of
+from sailenv_ros.light.bake.emitters import emitters_of
 from sailenv_ros.light.bake.facing import lit_texels
 from sailenv_ros.light.bake.fingerprint import fingerprint
 from sailenv_ros.light.bake.gather import Surroundings
@@ -145,9 +145,9 @@ class _Bake:
         drawn = contents.instances
         glows = glows_of(geometry, texels.triangle, {d.instance.id: d.lit_by for d in drawn})
         mirrors = mirror_shares(geometry, {d.instance.id: d.instance.category for d in drawn})
-        lit = close_to_lamps(contents.lights, texels, albedo)
-        emitters = emitters_of(geometry, texels, (emission, *glows.values(), *lit))
-        shining = [one.any(axis=1) for one in (emission, *glows.values())]
+        emitted = (emission, *glows.values())
+        emitters = emitters_of(geometry, texels, emitted, contents.lights, albedo)
+        shining = [one.any(axis=1) for one in emitted]
         self._glows: NDArray[np.bool_] = np.logical_or.reduce(shining)
         self._around = Surroundings(
             scene=scene,

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.light.bake.bounces import patches_of
-from sailenv_ros.light.bake.emitters import apart, close_to_lamps, emitters_of
+from sailenv_ros.light.bake.emitters import emitters_of, without_nested
 from sailenv_ros.light.bake.facing import lit_texels
 from sailenv_ros.light.bake.lamp_glow import glows_of
 from sailenv_ros.light.bake.layout import Layout
@@ -50,7 +50,7 @@ class BakedTexels:
     direct : (P, L) float32
         Means of the layers' direct light.
     emitters : (E, 4) float32
-        Small things that shine, apart from each other; see `emitters_of`.
+        Small things that shine, none within another; see `emitters_of`.
     """
 
     places: NDArray[np.int32]
@@ -115,11 +115,9 @@ def _laid_out(
         return patch_means(patches.of_texel, light[places].astype(np.float32), size)
 
     lights = [layer.light for layer in baked.layers if layer.light is not None]
-    shining = [
-        emission_of(geometry, layout, texels),
-        *glows_of(geometry, texels.triangle, lit_by).values(),
-        *close_to_lamps(lights, texels, albedo_of(geometry, layout, texels)),
-    ]
+    glows = glows_of(geometry, texels.triangle, lit_by)
+    emitted = (emission_of(geometry, layout, texels), *glows.values())
+    albedo = albedo_of(geometry, layout, texels)
     bounced = [layer.bounced.reshape(-1, 3) for layer in baked.layers]
     return BakedTexels(
         places=places,
@@ -130,7 +128,7 @@ def _laid_out(
         chosen=patches.middles(texels),
         irradiance=np.stack([means(colour) for light in bounced for colour in light.T], axis=1),
         direct=np.stack([means(layer.direct.reshape(-1)) for layer in baked.layers], axis=1),
-        emitters=apart(emitters_of(geometry, texels, shining)),
+        emitters=without_nested(emitters_of(geometry, texels, emitted, lights, albedo)),
     )
 
 

@@ -13,12 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.rays.model_triangles import triangles_of
-from sailenv_ros.rays.self_occlusion import (
-    LEAST_WEIGHT,
-    POINTS,
-    spread_points,
-    vertex_occlusion,
-)
+from sailenv_ros.rays.self_occlusion import LEAST_WEIGHT, POINTS, spread_points, vertex_occlusion
 from sailenv_ros.types.digests import once
 from sailenv_ros.types.model import Model
 
@@ -32,9 +27,8 @@ LEAST_HIDDEN = 0.1
 MOST_VERTICES = 8192
 """Of a model that are asked: leaves of a plant are too many, and too small."""
 
-WHOLE_M, LEAST_POINTS = 0.25, 512
-"""Radius from which on models have `POINTS` [m], and how many the smallest have, unless they have
-more triangles."""
+LARGE_M, LEAST_POINTS = 0.25, 512
+"""Models of this radius and more have `POINTS` [m]; smaller ones fewer, but so many at least."""
 
 RAYS = 1 << 17
 """From all points of a model together, as long as each has no fewer and no more than these."""
@@ -160,7 +154,7 @@ def vertex_points(model: Model) -> VertexPoints | None:
     if not model.is_veil and hidden[triangles].mean() < LEAST_HIDDEN:
         return None
     radius_m = float(np.linalg.norm(np.ptp(model.bounds(), axis=0))) / 2.0
-    count = int(np.clip(POINTS * (radius_m / WHOLE_M) ** 2, LEAST_POINTS, POINTS))
+    count = int(np.clip(POINTS * (radius_m / LARGE_M) ** 2, LEAST_POINTS, POINTS))
     owners, weights = spread_points(every.areas_m2, count)
     corners = triangles[owners]
 

@@ -1,6 +1,7 @@
 // Cones of directions to balls around small things that shine; see light/bake/emitters.py.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -9,22 +10,29 @@
 
 namespace sailenv {
 
-constexpr double NEAR = 1.02;  // nearer to the middle of an emitter, in radii, none is looked for
+// Nearer to the middle of an emitter, in radii, it has no cone.
+constexpr double NEAREST_RADII = 1.02;
+
+// Cosine of the angle from a cone's axis to its side, by the squares of an emitter's radius and
+// distance.
+static inline double cone_edge(float r2, float d2) {
+    return std::sqrt(1.0 - static_cast<double>(r2 / d2));
+}
 
 // The cone of directions from a point to an emitter.
 struct EmitterCone {
     float axis[3];
-    double edge;  // cosine of the angle from the axis to its side
+    double edge;  // see cone_edge
 
     // False where the point is too near.
     bool about(const float* ball, const float* p) {
         for (int c = 0; c < 3; c++) axis[c] = ball[c] - p[c];
         const float d2 = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
         const float r2 = ball[3] * ball[3];
-        if (!(d2 > NEAR * NEAR * r2)) return false;
+        if (!(d2 > NEAREST_RADII * NEAREST_RADII * r2)) return false;
         const float far = std::sqrt(d2);
         for (float& c : axis) c /= far;
-        edge = std::sqrt(1.0 - static_cast<double>(r2 / d2));
+        edge = cone_edge(r2, d2);
         return true;
     }
 
@@ -43,10 +51,10 @@ static inline double cone_density(const Emitters& emitters, const float* p, cons
         const float* ball = emitters.balls + 4 * e;
         const float x = ball[0] - p[0], y = ball[1] - p[1], z = ball[2] - p[2];
         const float d2 = x * x + y * y + z * z, r2 = ball[3] * ball[3];
-        if (d2 <= NEAR * NEAR * r2) continue;
+        if (d2 <= NEAREST_RADII * NEAREST_RADII * r2) continue;
         const float ahead = d[0] * x + d[1] * y + d[2] * z;
         if (ahead > 0.0f && ahead * ahead >= d2 - r2) {
-            density += 1.0 / (2.0 * PI * (1.0 - std::sqrt(1.0 - static_cast<double>(r2 / d2))));
+            density += 1.0 / (2.0 * PI * (1.0 - cone_edge(r2, d2)));
         }
     }
     return density;

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sailenv_ros.light.bake.area_light import form_factors
-from sailenv_ros.light.bake.emitters import apart
+from sailenv_ros.light.bake.emitters import without_nested
 from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Light
@@ -143,4 +143,4 @@ def test_emitters_within_another_are_a_part_of_it() -> None:
     """The bulb of a shade is, and one at its lower edge; what hangs out farther is not."""
     shade, bulb, below, beside = (0, 0, 0, 0.2), (0, 0, -0.1, 0.04), (0, 0, -0.19, 0.04), (0.3,) * 4
     balls = np.array([bulb, shade, beside, below, (0, 0, -0.2, 0.04)], np.float32)
-    np.testing.assert_array_equal(apart(balls), balls[[2, 1, 4]])
+    np.testing.assert_array_equal(without_nested(balls), balls[[2, 1, 4]])

@@ -145,7 +145,7 @@ def test_light_in_an_open_box_comes_from_where_it_is_open() -> None:
         assert inner == pytest.approx(0.8, rel=0.1)
 
 
-@pytest.mark.parametrize(("radius_m", "soft", "most"), [(1.0, 0.05, 0.0), (0.08, 0.2, 0.2)])
+@pytest.mark.parametrize(("radius_m", "soft", "most"), [(1.0, 0.05, 0.0), (0.08, 0.2, 0.4)])
 def test_in_a_hollow_a_lamp_shines_where_it_is_seen(
     radius_m: float, soft: float, most: float
 ) -> None:
@@ -169,7 +169,8 @@ def test_in_a_hollow_a_lamp_shines_where_it_is_seen(
     inside, below = points[:, 2] < 2.0 - 0.1 * radius_m, (away < 1.0 - soft) & (wanted > 0.02)
     np.testing.assert_allclose(found[inside & below], wanted[inside & below], rtol=0.05)
     hidden = inside & (away > 1.05)
-    assert np.abs(found[hidden]).mean() <= most * wanted[hidden].max()
+    assert np.abs(found[hidden]).max() <= most * wanted[hidden].max()
+    assert np.abs(found[hidden]).mean() <= 0.5 * most * wanted[hidden].max()
     assert min((inside & below).sum(), hidden.sum()) > 60
 
 
