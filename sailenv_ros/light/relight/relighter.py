@@ -18,6 +18,7 @@ from sailenv_ros.light.relight.baked_scene_store import BakedSceneStore
 from sailenv_ros.light.relight.change_follower import ChangeFollower
 from sailenv_ros.light.relight.movable_objects import can_be_lit
 from sailenv_ros.light.relight.object_lights import ObjectLights
+from sailenv_ros.light.relight.preparation import Preparation
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
@@ -74,7 +75,7 @@ class Relighter:
         self.beforehand = True
         self._pool: ThreadPoolExecutor | None = None
         self._refining: tuple[_Key, Future[BakedLight]] | None = None
-        self._preparing: Future[tuple[BakedScene, ShownShadows]] | None = None
+        self._preparing: Preparation | None = None
         self._rendered = 0
         self._original: SceneContents | None = None
         self._scene: BakedScene | None = None
@@ -109,7 +110,8 @@ class Relighter:
         self._scene, self._light, self._seen, self._refining = None, None, None, None
         self._changes, self._painted = [], {}
         self._follower = None if self._original is None else ChangeFollower(self._original)
-        self._preparing, self._rendered = None, 0
+        self._abandon()
+        self._rendered = 0
         self._objects, self._object_light = ObjectLights(), {}
         self._shadows, self._shading, self._shaded = None, None, None
 
@@ -144,8 +146,8 @@ class Relighter:
             soon = self._rendered > (READY_FRAMES if lockstep else 1)
             if self.beforehand and soon and self._scene is None and self._preparing is None:
                 # Beside the frames, so that the first move finds everything ready.
-                self._preparing = self._background().submit(
-                    _ready_scene, self._scenes, self._original, snapshot, self._objects
+                self._preparing = Preparation(
+                    self._background(), self._scenes, self._original, snapshot, self._objects
                 )
             self._bring_up_to_date(snapshot, lockstep=lockstep, changed_ns=changed_ns)
             self._object_light = self._light_on_objects(snapshot, lockstep=lockstep)
@@ -165,6 +167,7 @@ class Relighter:
 
     def close(self) -> None:
         """Wait for what is being computed; a second call does nothing."""
+        self._abandon()
         if self._pool is not None:
             self._pool.shutdown(wait=True, cancel_futures=True)
             self._pool = None
@@ -280,6 +283,11 @@ class Relighter:
             painted=self._painted,
         )
 
+    def _abandon(self) -> None:
+        if self._preparing is not None:
+            self._preparing.abandon()
+        self._preparing = None
+
     def _background(self) -> ThreadPoolExecutor:
         if self._pool is None:
             self._pool = ThreadPoolExecutor(1, "relighting")
@@ -295,18 +303,6 @@ class Relighter:
                 self._scene, self._shadows = self._preparing.result()
                 self._preparing = None
         return self._scene
-
-
-def _ready_scene(
-    scenes: BakedSceneStore, contents: SceneContents, snapshot: WorldSnapshot, objects: ObjectLights
-) -> tuple[BakedScene, ShownShadows]:
-    """Make a scene ready, and light and shadows of what can move, which no frame waits for."""
-    scene = scenes.scene_of(contents, 1)
-    objects.update(snapshot, scene, (), threads=1)
-    shadows = ShownShadows(scene, objects.points)
-    rest = [thing for thing in objects.things if not thing.moves]
-    shadows.on(scene.baked, rest, (), threads=1)
-    return scene, shadows
 
 
 def _key_of(changes: list[Change], painted: dict[int, Model]) -> _Key:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+from concurrent.futures import CancelledError
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +11,7 @@ import pytest
 
 from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.light.relight import relighter as module
+from sailenv_ros.light.relight.object_lights import ObjectLights
 from sailenv_ros.light.relight.quality import FINE, QUICK
 from sailenv_ros.light.relight.relighter import READY_FRAMES, Relighter
 from sailenv_ros.light.relight.relighting import relit
@@ -172,7 +175,7 @@ def test_the_first_move_finds_all_ready(baked: WorldSnapshot, lockstep: bool, fr
         assert relighter._preparing is None
         relighter.lit(baked, wanted=True, lockstep=lockstep)
     assert relighter._preparing is not None
-    relighter._preparing.result(timeout=60.0)
+    relighter._preparing.result(timeout_s=60.0)
     first = light_of(relighter.lit(at(baked, -0.5), wanted=True, lockstep=lockstep))
     other.watch(baked)
     second = light_of(other.lit(at(baked, -0.5), wanted=True, lockstep=True))
@@ -236,6 +239,30 @@ def test_furniture_beside_it_changes_the_light_on_what_can_move(with_a_cup: Worl
     assert np.abs(shaded.direct[1]).max() == 0.0
 
 
+def test_what_is_prepared_for_a_move_ends_with_the_scene(
+    with_a_cup: WorldSnapshot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After the step that it is at: a simulation that ends does not work on for seconds."""
+    began, may_go_on = threading.Event(), threading.Event()
+
+    def slowly(*args: object, **settings: object) -> None:
+        began.set()
+        assert may_go_on.wait(60.0)
+
+    monkeypatch.setattr(ObjectLights, "update", slowly)
+    relighter = Relighter()
+    for _ in range(2):
+        relighter.lit(with_a_cup, wanted=True, lockstep=False)
+    preparing = relighter._preparing
+    assert preparing is not None
+    assert began.wait(60.0)
+    relighter.watch(replace(with_a_cup, contents=replace(with_a_cup.contents, baked=None)))
+    may_go_on.set()
+    with pytest.raises(CancelledError):
+        preparing.result(timeout_s=60.0)
+    relighter.close()
+
+
 def test_in_real_time_no_picture_waits_for_the_light_on_what_can_move(
     with_a_cup: WorldSnapshot,
 ) -> None:
@@ -244,6 +271,6 @@ def test_in_real_time_no_picture_waits_for_the_light_on_what_can_move(
     assert not relighter.lit(with_a_cup, wanted=True, lockstep=False).object_light
     relighter.lit(with_a_cup, wanted=True, lockstep=False)
     assert relighter._preparing is not None
-    relighter._preparing.result(timeout=60.0)
+    relighter._preparing.result(timeout_s=60.0)
     assert relighter.lit(with_a_cup, wanted=True, lockstep=False).object_light.keys() == {3}
     relighter.close()
