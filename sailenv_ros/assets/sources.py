@@ -42,6 +42,8 @@ class UnbuiltPack:
     @property
     def display_names(self) -> Mapping[str, str]:
         """Display name of each catalogue name."""
+        if self._names == ():
+            return MappingProxyType({})  # to read the recipe takes a while
         recipe = standard_recipe()
         names = recipe.assets if self._names is None else self._names
         return MappingProxyType({name: recipe.display_name(name) for name in names})

@@ -121,12 +121,24 @@ def code_digest(*folders: str, libraries: tuple[str, ...] = ()) -> str:
     """
     digest = blake2b(digest_size=16)
     for folder in folders:
-        for file in sorted((_PACKAGE / folder).glob("*.py")):
-            digest.update(file.name.encode())
-            digest.update(file.read_bytes())
+        digest.update(_modules_digest(folder))
     for library in ("numpy", *libraries):
-        digest.update(f"{library} {metadata.version(library)}".encode())
+        digest.update(f"{library} {_version(library)}".encode())
     return digest.hexdigest()
+
+
+@lru_cache
+def _modules_digest(folder: str) -> bytes:
+    digest = blake2b(digest_size=16)
+    for file in sorted((_PACKAGE / folder).glob("*.py")):
+        digest.update(file.name.encode())
+        digest.update(file.read_bytes())
+    return digest.digest()
+
+
+@lru_cache
+def _version(library: str) -> str:
+    return metadata.version(library)
 
 
 @lru_cache
