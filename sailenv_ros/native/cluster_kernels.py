@@ -1,6 +1,6 @@
 """The clusters of triangles that an eye sees, by src/kernels/cluster_culling.cpp.
 
-Clusters (see `render.scene.clusters`) and an eye come in, the indices of the triangles that it may
+Clusters (see `mesh_kernels`) and an eye come in, the indices of the triangles that it may
 see go out.
 """
 

@@ -52,6 +52,8 @@ CLUSTER = structure(
     ("axis", "<f8", 3),
     ("cosine", "<f8"),
 )
+"""A cluster: its indices, the sphere around it, the middle of its normals, and the cosine of the
+angle by which one of them deviates at most (-1: nothing can be said of where it faces)."""
 
 TEXTURE = structure(("texels_at", ADDRESS), ("log2_size", "<i8"))
 

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.deformation_kernels import bounding_sphere, move_mesh
-from sailenv_ros.native.render_types import CLUSTER
-from sailenv_ros.render.scene.clusters import clusters_of
-from sailenv_ros.render.scene.drawn_meshes import DrawnMesh, corner_sources, corners_of
+from sailenv_ros.native.mesh_kernels import clusters_of, corners_of
+from sailenv_ros.render.scene.drawn_meshes import DrawnMesh, corner_sources
 from sailenv_ros.types.deformation import MovedMesh
 
 __all__ = ["MeshArrays", "MeshStore"]
@@ -105,10 +104,10 @@ def _mesh_arrays(drawn: DrawnMesh) -> MeshArrays:
         drawn=drawn,
         corners=columns,
         corner_count=len(corners),
-        corner_indices=np.ascontiguousarray(numbers.reshape(-1), np.uint32),
-        vertex_indices=np.ascontiguousarray(triangles.reshape(-1), np.uint32),
+        corner_indices=numbers.reshape(-1),
+        vertex_indices=triangles.reshape(-1),
         vertices=vertices,
-        clusters=np.ascontiguousarray(clusters.astype(CLUSTER)),
+        clusters=clusters,
         sphere=bounding_sphere(columns, len(corners)),
         corner_sources=corner_sources(triangles, numbers) if drawn.owner else _NO_SOURCES,
     )

@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sailenv_ros.native.deformation_kernels import move_clusters
-from sailenv_ros.native.render_types import CLUSTER as NATIVE_CLUSTER
-from sailenv_ros.render.scene.clusters import CLUSTER, clusters_of
+from sailenv_ros.native.mesh_kernels import clusters_of, corners_of
+from sailenv_ros.native.render_types import CLUSTER
 from sailenv_ros.render.scene.drawn_meshes import (
     VERTEX,
     DrawnMesh,
     corner_sources,
-    corners_of,
 )
 from sailenv_ros.types.deformation import MovedMesh
 
@@ -68,7 +67,7 @@ class GeometryBuffers:
     indices, corner_indices : (I,) uint32
         What the index buffers hold.
     clusters : (C,) CLUSTER
-        Groups of triangles that lie together in them; see `clusters`.
+        Groups of triangles that lie together in them; see `mesh_kernels`.
     """
 
     def __init__(self, context: moderngl.Context) -> None:
@@ -109,9 +108,9 @@ class GeometryBuffers:
                     vertices=made.copy(),
                     first_vertex=first_vertex,
                     corner_sources=corner_sources(triangles, numbers),
-                    corner_indices=np.ascontiguousarray(numbers.reshape(-1), np.uint32),
+                    corner_indices=numbers.reshape(-1),
                     first_corner=first_corner,
-                    clusters=groups.astype(NATIVE_CLUSTER),
+                    clusters=groups.copy(),
                     first_cluster=first_cluster,
                 )
             groups["first_index"] += first_index

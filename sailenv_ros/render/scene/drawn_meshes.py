@@ -22,7 +22,6 @@ __all__ = [
     "DrawnMesh",
     "chart_table",
     "corner_sources",
-    "corners_of",
     "drawn_meshes",
     "occludes_itself",
     "meshes_of",
@@ -209,37 +208,3 @@ def chart_table(contents: SceneContents) -> tuple[NDArray[np.float64], NDArray[n
             charts[row] = *chart.offset, *chart.scale
             poses[row] = chart.world_from_body
     return charts, poses
-
-
-def corners_of(
-    positions: NDArray[np.float32], triangles: NDArray[np.uint32]
-) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
-    """Return each place that triangles use a number, in the order in which they do.
-
-    Parameters
-    ----------
-    positions : (V, 3) float32
-    triangles : (M, 3) uint32
-
-    Returns
-    -------
-    corners : (K, 3) float32
-        Places, each once, bit for bit.
-    triangles : (M, 3) uint32
-        The same triangles of corners.
-    """
-    if not triangles.size:
-        return np.zeros((0, 3), np.float32), triangles
-    bits = np.ascontiguousarray(positions).view(np.uint32)
-    order = np.lexsort(bits.T)
-    differs = (np.diff(bits[order], axis=0) != 0).any(axis=1)
-    place_of = np.empty(len(positions), np.int64)
-    place_of[order] = np.concatenate([[0], np.cumsum(differs)])
-    used, first, corner_of = np.unique(
-        place_of[triangles.reshape(-1)], return_index=True, return_inverse=True
-    )
-    rank = np.empty(len(used), np.uint32)
-    by_use = np.argsort(first)
-    rank[by_use] = np.arange(len(used), dtype=np.uint32)
-    corners = positions[triangles.reshape(-1)[first[by_use]]]
-    return corners, rank[corner_of.reshape(-1)].reshape(-1, 3)

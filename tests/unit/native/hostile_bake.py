@@ -24,6 +24,7 @@ from sailenv_ros.native.light_kernels import (
     rectangle_form_factors,
 )
 from sailenv_ros.native.ray_types import RAY_LIGHT
+from sailenv_ros.native.render_types import CLUSTER
 from sailenv_ros.native.surface_light import (
     add_radiance_met,
     hand_on,
@@ -40,7 +41,6 @@ from sailenv_ros.native.texel_kernels import (
     nearest_triangles,
     texel_stand_ins,
 )
-from sailenv_ros.render.scene.clusters import CLUSTER
 from tests.unit.native.hostile_numbers import NUMBERS, THREADS, wild_floats
 
 __all__ = ["DRIVERS"]

@@ -15,6 +15,7 @@ from sailenv_ros.native.deformation_kernels import (
     refit,
     skin,
 )
+from sailenv_ros.native.mesh_kernels import clusters_of, corners_of
 from sailenv_ros.native.motion_kernels import MOTION_OUTPUTS, SurfaceMotions, move_points
 from sailenv_ros.native.render_types import CLUSTER, TRIANGLE_PLACE
 from sailenv_ros.native.surface_kernels import DeformingSurface, SurfaceTree, surface_points
@@ -64,6 +65,20 @@ def drive_clusters() -> None:
         move()
     for count in (0, 1, 17):
         bounding_sphere(wild_floats(rng, 3, 17), count)
+
+
+def drive_meshes() -> None:
+    """Places that are no numbers, vertices that are not there, many triangles in one place."""
+    rng = np.random.default_rng(9)
+    for vertices, count in ((0, 0), (1, 700), (40, 1), (40, 700)):
+        positions = wild_floats(rng, vertices, 3)
+        triangles = rng.integers(max(vertices, 1), size=(count, 3)).astype(np.uint32)
+        for order in (clusters_of, corners_of):
+            order(positions, triangles)
+        triangles[-1:] = vertices
+        for order in (clusters_of, corners_of):
+            with contextlib.suppress(NativeLibraryError):
+                order(positions, triangles)
 
 
 def drive_surfaces() -> None:
@@ -129,6 +144,7 @@ def drive_offsets() -> None:
 DRIVERS: tuple[Callable[[], None], ...] = (
     drive_skinning,
     drive_clusters,
+    drive_meshes,
     drive_surfaces,
     drive_offsets,
 )

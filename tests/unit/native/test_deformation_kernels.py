@@ -13,11 +13,11 @@ from sailenv_ros.native.deformation_kernels import (
     skin,
 )
 from sailenv_ros.native.library import load_library, using_instruction_set
-from sailenv_ros.native.render_types import CLUSTER, TRIANGLE_PLACE
+from sailenv_ros.native.mesh_kernels import clusters_of
+from sailenv_ros.native.render_types import TRIANGLE_PLACE
 from sailenv_ros.native.surface_kernels import surface_points
 from sailenv_ros.rays.opaque_models import opaque_model, surface_between
 from sailenv_ros.render.cpu.mesh_store import MeshStore
-from sailenv_ros.render.scene.clusters import clusters_of
 from sailenv_ros.render.scene.drawn_meshes import DrawnMesh
 from tests.support.tiny_scenes import model_of
 from tests.support.waving_sheet import sheet_mesh, waved
@@ -84,7 +84,7 @@ def test_clusters_of_moved_corners_are_those_that_are_made_of_them() -> None:
     mesh = SHEET.parts[0].mesh
     triangles, clusters = clusters_of(mesh.positions, mesh.triangles)
     moved = waved(SHEET, 0.7).meshes[0].positions
-    given = clusters.astype(CLUSTER)
+    given = clusters.copy()
     move_clusters(moved, np.ascontiguousarray(triangles.reshape(-1)), given)
     corners = moved[triangles].astype(np.float64)
     for cluster in given:

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from sailenv_ros.native.cluster_kernels import MARGIN, seen_indices
-from sailenv_ros.render.scene.clusters import CLUSTER, CLUSTER_TRIANGLES, clusters_of
+from sailenv_ros.native.mesh_kernels import CLUSTER_TRIANGLES, clusters_of
+from sailenv_ros.native.render_types import CLUSTER
 from sailenv_ros.types.camera import Camera, CameraIntrinsics
 from sailenv_ros.types.geometry import look_at
 

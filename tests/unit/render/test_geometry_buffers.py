@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailenv_ros.render.scene.drawn_meshes import corners_of
+from sailenv_ros.native.mesh_kernels import corners_of
 
 
 @given(seed=st.integers(0, 2**16), vertices=st.integers(1, 60), count=st.integers(1, 80))

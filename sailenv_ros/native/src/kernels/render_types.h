@@ -11,7 +11,7 @@
 
 namespace sailenv {
 
-constexpr int32_t CLUSTER_TRIANGLES = 32;  // at most; see render/scene/clusters.py
+constexpr int32_t CLUSTER_TRIANGLES = 32;  // at most; as in native/mesh_kernels.py
 
 // A group of neighbouring triangles that face alike.
 struct Cluster {
