@@ -1,4 +1,4 @@
-"""What a scene's first move needs, made on a thread beside the frames."""
+"""Makes a scene ready for its first move, on a thread beside the frames."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Preparation:
         With the light that was baked.
     snapshot : WorldSnapshot
     objects : ObjectLights
-        Brought up to date; used by nobody else until `done`.
+        They are updated; used by nobody else until `done`.
     """
 
     def __init__(

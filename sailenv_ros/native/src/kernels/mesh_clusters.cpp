@@ -69,11 +69,11 @@ uint64_t side_of(const float* positions, const uint32_t* corners) {
     if (!(length > 0.0)) return 0;
     // Sides that a triangle faces alike must not be chosen by how large it is.
     for (double& x : n.x) x /= length;
-    int axis = 0;
-    for (int j = 1; j < 3; j++) {
+    size_t axis = 0;
+    for (size_t j = 1; j < 3; j++) {
         if (std::fabs(n.x[j]) > std::fabs(n.x[axis])) axis = j;
     }
-    return static_cast<uint64_t>(2 * axis + (n.x[axis] < 0.0 ? 1 : 0));
+    return 2 * axis + (n.x[axis] < 0.0 ? 1 : 0);
 }
 
 // The bits of a cell's number, with two empty places after each: those of the other axes go there.
@@ -125,15 +125,15 @@ public:
 
     // The number of a place; that of `next` if it has not been met. `corners` holds those met.
     uint32_t number_of(const float* place, const float* corners, uint32_t next) {
-        uint32_t bits[3];
+        uint32_t bits[3], other[3];
         memcpy(bits, place, sizeof bits);
         uint64_t hash = bits[0] * 0x9E3779B97F4A7C15u;
         hash = (hash ^ hash >> 29 ^ bits[1]) * 0xBF58476D1CE4E5B9u;
         hash = (hash ^ hash >> 32 ^ bits[2]) * 0x94D049BB133111EBu;
         size_t slot = (hash ^ hash >> 31) & (slots_.size() - 1);
         while (slots_[slot] != NONE) {
-            const float* other = corners + 3 * static_cast<int64_t>(slots_[slot]);
-            if (memcmp(other, place, sizeof bits) == 0) return slots_[slot];
+            memcpy(other, corners + 3 * static_cast<int64_t>(slots_[slot]), sizeof other);
+            if (std::equal(bits, bits + 3, other)) return slots_[slot];
             slot = (slot + 1) & (slots_.size() - 1);
         }
         return slots_[slot] = next;
