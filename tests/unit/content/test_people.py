@@ -89,6 +89,24 @@ def test_a_person_is_the_same_bytes_and_wears_what_is_said(data: BodyData) -> No
     assert abs(float(first.model.bounds()[0, 2])) < 0.002
 
 
+def test_a_person_is_made_once_for_all_processes(
+    data: BodyData, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To make one takes some seconds: another source reads what the first one kept."""
+    made = make_person("person_02", people()["person_02"], data)
+    PeopleSource().load("person_02")
+    monkeypatch.setattr("sailenv_content.people.making.make_person", None)
+    read = PeopleSource().load("person_02")
+    assert made.rig is not None
+    assert read.rig is not None
+    assert read.rig.points == made.rig.points
+    assert read.rig.heads.tobytes() == made.rig.heads.tobytes()
+    assert (read.mass_kg, read.collision) == (made.mass_kg, made.collision)
+    for one, other in zip(read.model.parts, made.model.parts, strict=True):
+        assert one.mesh.positions.tobytes() == other.mesh.positions.tobytes()
+        assert one.material.base_colour == other.material.base_colour
+
+
 def test_without_data_there_are_no_people(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr("sailenv_content.people.source.body_data", lambda: None)
