@@ -14,7 +14,7 @@ from sailenv_msgs.msg import SceneInfo
 from tests.support.ros_probe import LATCHED, Probe
 from tests.support.waiting import until
 
-START_TIMEOUT_S = 60.0
+START_TIMEOUT_S = 240.0
 END_TIMEOUT_S = 20.0
 
 
