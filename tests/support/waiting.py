@@ -10,7 +10,7 @@ SHORTEST_S, LONGEST_S = 0.0005, 0.01
 """Between two looks: much of what is waited for is there at once."""
 
 
-def until(condition: Callable[[], object], what: str, timeout_s: float = 20.0) -> None:
+def until(condition: Callable[[], object], what: str, timeout_s: float = 60.0) -> None:
     """Wait until a condition holds; fail by naming what was waited for."""
     deadline = time.monotonic() + timeout_s
     pause, pause_s = threading.Event(), SHORTEST_S
