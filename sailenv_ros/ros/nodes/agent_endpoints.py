@@ -14,6 +14,7 @@ from sailenv_ros.ros.nodes.publishers import AgentPublisher
 from sailenv_ros.ros.nodes.requests import OperationRunner
 from sailenv_ros.ros.nodes.tf_tree import TfTree
 from sailenv_ros.simulation import Simulation
+from sailenv_ros.system.memory import give_back_freed_memory
 from sailenv_ros.types.agents import AgentSpec
 from sailenv_ros.types.scene_info import SceneInfo
 
@@ -48,10 +49,14 @@ class AgentEndpoints:
     def reconcile(self, info: SceneInfo) -> None:
         """Make what is missing and remove what belongs to nobody any more."""
         specs = {spec.name: spec for spec in info.agents}
+        left = self._endpoints.keys() - specs.keys()
         for name, endpoint in list(self._endpoints.items()):
             spec = specs.get(name)
             if spec is None or endpoint.publisher.ended or not _same_topics(spec, endpoint.spec):
                 self._endpoints.pop(name).close()
+        if left:
+            # Its frames and its ends of topics were among what stays, and leave holes there.
+            give_back_freed_memory()
         self._tf.set_agents(info.agents)
         self._disparity.set_agents(info.agents)
         for name, spec in specs.items():
