@@ -1,6 +1,7 @@
 """The structures of src/kernels/render_types.h as NumPy types: what drawing kernels are given.
 
-Fields that end in `_at` hold addresses of arrays; the code that fills them keeps the arrays alive.
+Fields that end in `_at` hold addresses of arrays: a `Record` keeps these alive that it is told of,
+and the code that fills it the others.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ __all__ = [
     "RIGID",
     "TEXTURE",
     "TRIANGLE_PLACE",
+    "Record",
     "VIEW",
     "address",
     "record",
@@ -141,11 +143,27 @@ OUTPUTS = structure(
 )
 
 
-def record(kind: np.dtype[np.void], **values: Any) -> NDArray[np.void]:
-    """Return a structure, as an array of one, with some fields set and the others 0."""
-    result = np.zeros(1, kind)
+class Record(np.ndarray[Any, np.dtype[np.void]]):
+    """A structure, as an array of one, that keeps alive what its addresses point to.
+
+    Attributes
+    ----------
+    kept : tuple of object
+        Copies keep the same.
+    """
+
+    kept: tuple[object, ...]
+
+    def __array_finalize__(self, made_from: object) -> None:
+        self.kept = getattr(made_from, "kept", ())
+
+
+def record(kind: np.dtype[np.void], *, kept: tuple[object, ...] = (), **values: Any) -> Record:
+    """Return a structure that keeps some objects, with some fields set and the others 0."""
+    result = np.zeros(1, kind).view(Record)
     for name, value in values.items():
         result[name][0] = value
+    result.kept = kept
     return result
 
 

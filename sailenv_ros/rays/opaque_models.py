@@ -87,8 +87,8 @@ def deformed_model(deformation: Deformation) -> OpaqueModel:
         record = rest.tree.record.copy()
         record["nodes_at"], record["triangles_at"] = address(nodes), address(blocks)
         low, high = deformation.bounds
-        kept = (*rest.tree.kept, nodes, blocks)
-        tree = replace(rest.tree, record=record, nodes=nodes, low=low, high=high, kept=kept)
+        record.kept = (*record.kept, nodes, blocks)
+        tree = replace(rest.tree, record=record, nodes=nodes, low=low, high=high)
         _deformed[deformation] = replace(rest, corners=corners, tree=tree)
     return _deformed[deformation]
 

@@ -10,18 +10,19 @@ from numpy.typing import NDArray
 
 from sailenv_ros.native.ray_kernels import build_tree
 from sailenv_ros.native.ray_types import RAY_SHAPE, WIDTH
-from sailenv_ros.native.render_types import address, record
+from sailenv_ros.native.render_types import Record, address, record
 
 __all__ = ["TriangleTree", "in_leaves", "triangle_tree"]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class TriangleTree:
-    """Triangles in the order of a tree's leaves; keeps what its `record` points to.
+    """Triangles in the order of a tree's leaves.
 
     Attributes
     ----------
     record : (1,) RAY_SHAPE
+        Keeps what it points to.
     nodes : (N,) TREE_NODE
     order : (L, 8) int32
         Which triangles each leaf holds; -1 for none.
@@ -29,12 +30,11 @@ class TriangleTree:
         Corners of a box around all; zeros if there is nothing.
     """
 
-    record: NDArray[np.void]
+    record: Record
     nodes: NDArray[np.void]
     order: NDArray[np.int32]
     low: NDArray[np.float64]
     high: NDArray[np.float64]
-    kept: tuple[NDArray[Any] | None, ...]
 
 
 def triangle_tree(
@@ -75,6 +75,7 @@ def triangle_tree(
     points = corners.reshape(-1, 3).astype(np.float64) if count else np.zeros((1, 3))
     made = record(
         RAY_SHAPE,
+        kept=kept,
         nodes_at=address(kept[0]),
         triangles_at=address(kept[1]),
         order_at=address(kept[2]),
@@ -88,7 +89,6 @@ def triangle_tree(
         order=order,
         low=points.min(axis=0),
         high=points.max(axis=0),
-        kept=kept,
     )
 
 

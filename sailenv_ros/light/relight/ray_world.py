@@ -21,7 +21,7 @@ from sailenv_ros.light.relight.scene_changes import (
 from sailenv_ros.light.relight.sent_light import sent_by_probes
 from sailenv_ros.native.ray_kernels import build_tree
 from sailenv_ros.native.ray_types import RAY_SCENE
-from sailenv_ros.native.render_types import address, record
+from sailenv_ros.native.render_types import Record, address, record
 
 __all__ = ["RayWorld", "ray_world"]
 
@@ -30,18 +30,18 @@ Floats = NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RayWorld:
-    """A scene before and after, and everything that its `record` points to.
+    """A scene before and after.
 
     Attributes
     ----------
     record : (1,) RAY_SCENE
+        Keeps everything alive that it points to.
     changed : list of PlacedInstance
         What stands there before or after alone.
     """
 
-    record: NDArray[np.void]
+    record: Record
     changed: list[PlacedInstance]
-    kept: tuple[object, ...]
 
     def with_more(self, things: Sequence[PlacedInstance]) -> RayWorld:
         """Return the same with a few things that stand there, too, and were not baked."""
@@ -49,7 +49,8 @@ class RayWorld:
         rows, _ = ray_instances(changed)
         made = self.record.copy()
         made["changed_at"], made["changed_count"] = address(rows), len(rows)
-        return RayWorld(made, changed, (*self.kept, rows))
+        made.kept = (*self.record.kept, rows, things)
+        return RayWorld(made, changed)
 
 
 def ray_world(
@@ -90,6 +91,7 @@ def ray_world(
     panes, passes = scene.panes
     made = record(
         RAY_SCENE,
+        kept=(scene, resting, rows, nodes, order, changed, changed_rows, before, after),
         nodes_at=address(nodes),
         order_at=address(order),
         resting_at=address(rows),
@@ -111,8 +113,7 @@ def ray_world(
         width=scene.side,
         channels=before.shape[1],
     )
-    kept = (scene, resting, rows, nodes, order, changed_rows, before, after)
-    return RayWorld(made, changed, kept)
+    return RayWorld(made, changed)
 
 
 def _sent_out(scene: BakedScene, change: Change) -> Floats | None:

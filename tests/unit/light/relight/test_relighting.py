@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +12,10 @@ import pytest
 from sailenv_ros.light.bake.pipeline import bake
 from sailenv_ros.light.relight.baked_scene import BakedScene
 from sailenv_ros.light.relight.quality import FINE, QUICK, Quality
+from sailenv_ros.light.relight.ray_world import ray_world
 from sailenv_ros.light.relight.relighting import relit
 from sailenv_ros.light.relight.scene_changes import Change
+from sailenv_ros.rays.triangle_tree import triangle_tree
 from sailenv_ros.types.baked_light import BakedLight
 from sailenv_ros.types.geometry import Pose
 from sailenv_ros.types.lights import Environment, Light
@@ -68,6 +72,22 @@ def light_at(baked: BakedLight, snapshot: WorldSnapshot, instance: int) -> np.nd
             for layer in baked.layers
         ]
     )
+
+
+def test_what_kernels_read_lives_as_long_as_their_record(scene: BakedScene) -> None:
+    """Its addresses are numbers: without the world that it is of, arrays would be free memory."""
+    radiance = np.zeros((len(scene.patches.size), 3), np.float32)
+    living = weakref.ref(radiance)
+    record = ray_world(scene, (), radiance, radiance).with_more(()).record
+    shape = triangle_tree(np.eye(3, dtype=np.float32)[None]).record
+    del radiance
+    gc.collect()
+    assert living() is not None
+    addresses = [array.ctypes.data for array in shape.kept if array is not None]
+    assert int(shape["nodes_at"][0]) in addresses
+    assert shape.copy().kept == shape.kept
+    del record
+    assert living() is None
 
 
 @pytest.mark.parametrize(("quality", "most"), [(QUICK, 0.2), (FINE, 0.1)])
