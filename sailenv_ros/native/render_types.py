@@ -158,7 +158,7 @@ class Record(np.ndarray[Any, np.dtype[np.void]]):
         self.kept = getattr(made_from, "kept", ())
 
 
-def record(kind: np.dtype[np.void], *, kept: tuple[object, ...] = (), **values: Any) -> Record:
+def record(kind: np.dtype[np.void], kept: tuple[object, ...] = (), /, **values: Any) -> Record:
     """Return a structure that keeps some objects, with some fields set and the others 0."""
     result = np.zeros(1, kind).view(Record)
     for name, value in values.items():

@@ -75,7 +75,7 @@ def triangle_tree(
     points = corners.reshape(-1, 3).astype(np.float64) if count else np.zeros((1, 3))
     made = record(
         RAY_SHAPE,
-        kept=kept,
+        kept,
         nodes_at=address(kept[0]),
         triangles_at=address(kept[1]),
         order_at=address(kept[2]),

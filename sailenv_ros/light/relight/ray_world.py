@@ -91,7 +91,7 @@ def ray_world(
     panes, passes = scene.panes
     made = record(
         RAY_SCENE,
-        kept=(scene, resting, rows, nodes, order, changed, changed_rows, before, after),
+        (scene, resting, rows, nodes, order, changed, changed_rows, before, after),
         nodes_at=address(nodes),
         order_at=address(order),
         resting_at=address(rows),
