@@ -1,7 +1,7 @@
 """The structures of src/kernels/render_types.h as NumPy types: what drawing kernels are given.
 
-Fields that end in `_at` hold addresses of arrays: a `Record` keeps these alive that it is told of,
-and the code that fills it the others.
+Fields that end in `_at` hold addresses of arrays. A `Record` keeps alive the arrays that it is
+given for that; the code that fills the structure keeps the others.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ __all__ = [
     "RIGID",
     "TEXTURE",
     "TRIANGLE_PLACE",
-    "Record",
     "VIEW",
+    "Record",
     "address",
     "record",
     "structure",

@@ -55,7 +55,7 @@ class AgentEndpoints:
             if spec is None or endpoint.publisher.ended or not _same_topics(spec, endpoint.spec):
                 self._endpoints.pop(name).close()
         if left:
-            # Its frames and its ends of topics were among what stays, and leave holes there.
+            # Their frames and endpoints leave holes in memory among what stays.
             give_back_freed_memory()
         self._tf.set_agents(info.agents)
         self._disparity.set_agents(info.agents)
