@@ -19,9 +19,10 @@ def join(process):
     before = renew_inherited_dds()
     context = Context()
     rclpy.init(args=[], context=context)
-    node = Node("joined", context=context, use_global_arguments=False, enable_rosout=False)
+    # Each under a name of its own, as they hear one another.
+    node = Node(process, context=context, use_global_arguments=False, enable_rosout=False)
     node.create_publisher(Empty, "~/said", 1)
-    [publisher] = node.get_publishers_info_by_topic("/joined/said")
+    [publisher] = node.get_publishers_info_by_topic(f"/{process}/said")
     own_id = list((os.getpid() & 0xFFFF).to_bytes(2, "little"))
     print(process, before, renew_inherited_dds(), publisher.endpoint_gid[4:6] == own_id, flush=True)
     return node, context
@@ -52,7 +53,7 @@ fork("child", lambda: fork("grandchild"))
 fork("sibling")
 assert fast_dds.pthread_mutex_unlock(ctypes.byref(mutex)) == 0
 leave(*joined)
-leave(*join("parent"))
+leave(*join("parent_again"))
 """
 
 
@@ -66,5 +67,5 @@ def test_every_fork_makes_its_own() -> None:
         "child True False True",
         "grandchild True False True",
         "sibling True False True",
-        "parent False False True",
+        "parent_again False False True",
     ], ran.stderr
